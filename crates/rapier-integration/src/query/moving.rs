@@ -109,7 +109,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         if !turns {
             return Some((search.aabb_in_mesh(), velocity));
         }
-        let centre = search.placed.point_in_mesh(shape.local_center);
+        let centre = search.placed.in_mesh(shape.local_center.as_dvec3());
         let reach = (reach(shape, &ball) * (1.0 + 1.0e-6)) as Real;
         Some((Aabb::from_half_extents(centre, Vec3::splat(reach)), velocity))
     }
@@ -245,7 +245,7 @@ impl<'a> MovingTriangle<'a> {
         let Some(normal) = (mesh.rotation * (b - a).cross(c - a)).try_normalize() else {
             return 0.0;
         };
-        let inside = search.placed.point_in_mesh(search.balls()[1].centre).as_dvec3();
+        let inside = search.placed.in_mesh(search.balls()[1].centre.as_dvec3()).as_dvec3();
         let is_toward = (mesh.rotation * (a - inside)).dot(normal) >= 0.0;
         self.clear_along(if is_toward { normal } else { -normal }, depth, from, end)
     }

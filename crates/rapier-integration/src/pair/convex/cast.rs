@@ -54,7 +54,7 @@ impl ConvexSearch<'_> {
             MeshPlace::First => (-(placement.rotation * velocity12), velocity12),
             MeshPlace::Second => (velocity12, -(placement.inverse * velocity12)),
         };
-        let around = self.shape.compute_aabb(&self.pose_in_mesh);
+        let around = self.aabb_in_mesh();
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
         let latest = f64::from(max_time_of_impact);
         let may_slide = !options.stop_at_penetration && target > 0.0;

@@ -83,21 +83,18 @@ impl ConvexQuery<'_> {
         contacts: &[([u32; 2], PartContact)],
         scratch: &mut ConvexScratch,
     ) {
-        let subshapes = |of: [u32; 2]| self.pair.mesh_place.swap(of);
         let keys = |&of: &[u32; 2]| {
-            let [triangle, part] = subshapes(of);
+            let [triangle, part] = self.pair.mesh_place.swap(of);
             self.pair.mesh.corners(triangle).map(|corner| corner_key(part, corner))
         };
         let scratch_of = RefCell::new(scratch);
         let extends_beyond = |&of: &[u32; 2], contact: &ConvexContact| {
             let scratch = &mut scratch_of.borrow_mut();
-            self.with_pair(subshapes(of), scratch, |pair| pair.extends_beyond(contact))
-                .unwrap_or(false)
+            self.with_pair(of, scratch, |pair| pair.extends_beyond(contact)).unwrap_or(false)
         };
         let find_strays = |(of, hit): &([u32; 2], PartContact), strays: &mut Vec<u32>| {
             let scratch = &mut scratch_of.borrow_mut();
-            let place =
-                self.with_pair(subshapes(*of), scratch, |pair| pair.touched_place(&hit.contact));
+            let place = self.with_pair(*of, scratch, |pair| pair.touched_place(&hit.contact));
             if let Some((place, seam)) = place.flatten() {
                 self.strays_at(contacts, *of, place, seam, |stray| strays.push(stray));
             }
@@ -117,9 +114,8 @@ impl ConvexQuery<'_> {
         upright.extend(borders.iter().filter(|&&i| sources[i as usize] == i).filter_map(
             |&border| {
                 let (of, hit) = &contacts[border as usize];
-                let subshapes = self.pair.mesh_place.swap(*of);
                 let upright =
-                    self.with_pair(subshapes, scratch, |pair| pair.upright_at_border(&hit.contact));
+                    self.with_pair(*of, scratch, |pair| pair.upright_at_border(&hit.contact));
                 Some((border, upright.flatten()?))
             },
         ));
@@ -141,8 +137,8 @@ impl ConvexQuery<'_> {
             let contact = ghosts.on_faces[i];
             ghosts.list_nearby(contact);
             let face = ghosts.nearby.iter().find_map(|&other| {
-                let subshapes = self.pair.mesh_place.swap(contacts[other as usize].0);
-                self.with_pair(subshapes, scratch, |pair| pair.crossing_face_contact())?
+                let (of, _) = contacts[other as usize];
+                self.with_pair(of, scratch, |pair| pair.crossing_face_contact())?
             });
             if let Some(face) = face {
                 contacts[contact as usize].1.take_normal(&face);

@@ -71,7 +71,7 @@ impl PlacedPart {
 
     /// Returns a point of the part in the frame of the mesh.
     #[inline(always)]
-    pub(super) fn in_mesh(&self, point: DVec3) -> Vec3 {
+    pub(crate) fn in_mesh(&self, point: DVec3) -> Vec3 {
         if let Some(centre) = self.centre_in_mesh {
             return (centre + point).as_vec3();
         }
@@ -95,10 +95,5 @@ impl PlacedPart {
         let (min, max, reach) = self.extent.widest(reach);
         let gap = (a.min(*b).min(*c) - max).max(min - a.max(*b).max(*c)).max(DVec3::ZERO);
         gap.length_squared() > reach * reach
-    }
-
-    /// Returns a point of the part, in f32, in the frame of the mesh.
-    pub(crate) fn point_in_mesh(&self, point: Vec3) -> Vec3 {
-        self.in_mesh(point.as_dvec3())
     }
 }

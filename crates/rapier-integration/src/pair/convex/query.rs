@@ -104,15 +104,16 @@ thread_local! {
 }
 
 impl ConvexQuery<'_> {
-    /// Calls `then` with a triangle and a part.
+    /// Calls `then` with the triangle and the part that two subshapes are.
     #[inline(always)]
     pub(super) fn with_pair<T>(
         &self,
-        [triangle, part]: [u32; 2],
+        subshapes: [u32; 2],
         scratch: &mut ConvexScratch,
         then: impl FnOnce(TrianglePartPair<'_>) -> T,
     ) -> Option<T> {
-        let ConvexPair { mesh, parts, .. } = self.pair;
+        let ConvexPair { mesh, parts, mesh_place, .. } = self.pair;
+        let [triangle, part] = mesh_place.swap(subshapes);
         let cone = if self.pair.has_surface() {
             None
         } else {
@@ -273,8 +274,7 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
         points: &mut ContactPoints,
     ) -> Option<ContactSummary> {
-        let subshapes = self.pair.mesh_place.swap(*subshapes);
-        self.with_pair(subshapes, scratch, |pair| pair.summary(contact, points))?
+        self.with_pair(*subshapes, scratch, |pair| pair.summary(contact, points))?
     }
 
     #[inline(always)]
@@ -285,8 +285,7 @@ impl PairQuery for ConvexQuery<'_> {
         points: &mut ContactPoints,
     ) {
         points.points.clear();
-        let subshapes = self.pair.mesh_place.swap(*subshapes);
-        self.with_pair(subshapes, scratch, |pair| pair.write(contact, points));
+        self.with_pair(*subshapes, scratch, |pair| pair.write(contact, points));
     }
 }
 

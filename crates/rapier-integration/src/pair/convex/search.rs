@@ -49,10 +49,6 @@ pub(crate) struct FoundTriangle {
 }
 
 impl FoundTriangle {
-    pub(crate) fn distance(&self) -> Real {
-        self.contact.distance as Real
-    }
-
     /// Returns the points on the mesh and on the shape, each in its frame.
     pub(crate) fn points(&self, placed: &PlacedPart) -> [Vector; 2] {
         let ConvexContact { on_triangle, on_shape, .. } = self.contact;
@@ -199,7 +195,7 @@ impl<'a> ConvexSearch<'a> {
     pub(crate) fn nearest(&self, limit: f64) -> Option<FoundTriangle> {
         self.least(limit, self.gap(), |triangle, limit| {
             let found = self.triangle(&self.placed, triangle, limit)?;
-            Some((found.distance().max(0.0), found))
+            Some(((found.contact.distance as Real).max(0.0), found))
         })
     }
 
