@@ -6,11 +6,12 @@ use sbbk_core::collections::UnionFind;
 /// contacts that push each island apart.
 #[derive(Default)]
 pub(crate) struct OverlapIslands {
-    crossings: Vec<Crossing>,
-    /// Pairs of triangles that touch without a contact.
-    touching: Vec<[u32; 2]>,
+    /// Pairs of the first pass that cross or have passed each other.
+    pub(super) crossings: Vec<Crossing>,
+    /// Pairs of the first pass that touch without a contact.
+    pub(super) touching: Vec<[u32; 2]>,
     /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
-    separation: Option<DVec3>,
+    pub(super) separation: Option<DVec3>,
     /// Pairs whose contact pushes the wrong way.
     rejected: FxHashSet<[u32; 2]>,
     /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
@@ -168,16 +169,6 @@ impl OverlapIslands {
         self.touching.extend(next.touching);
     }
 
-    /// Adds a pair in the first pass.
-    pub(super) fn add(&mut self, crossing: Crossing) {
-        self.crossings.push(crossing);
-    }
-
-    /// Adds a pair that touches without a contact.
-    pub(super) fn add_touching(&mut self, pair: [u32; 2]) {
-        self.touching.push(pair);
-    }
-
     /// Returns the triangles of shape `i` with final contacts, and the normals of these.
     pub(super) fn final_normals(&self, i: usize) -> impl Iterator<Item = (u32, DVec3)> {
         let fine = self.crossings.iter().filter(|crossing| self.is_fine(crossing));
@@ -191,22 +182,9 @@ impl OverlapIslands {
         crossing.chain(touching.copied())
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.crossings.len()
-    }
-
-    /// Returns a pair that crosses.
-    pub(super) fn first(&self) -> Option<[u32; 2]> {
-        self.crossings.first().map(|crossing| crossing.pair)
-    }
-
     /// Returns a crossing, by its index, unless its contact is final.
     pub(super) fn open(&self, index: usize) -> Option<Crossing> {
         Some(self.crossings[index]).filter(|crossing| !self.is_fine(crossing))
-    }
-
-    pub(super) fn has_separation(&self) -> bool {
-        self.separation.is_some()
     }
 
     /// Returns true if reliable contacts push about as much one way as the other. They would not

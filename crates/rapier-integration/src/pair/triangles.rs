@@ -18,7 +18,7 @@ use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
 use super::deep::{self, ContourMemory};
 use super::far::{Directions, FarSearch};
-use super::islands::OverlapIslands;
+use super::islands::{Crossing, OverlapIslands};
 use super::passed::PassedTriangles;
 use super::pose::PairPose;
 use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery};
@@ -150,7 +150,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
-            let is_in_both = islands.has_separation();
+            let is_in_both = islands.separation.is_some();
             contacts.extend(self.shapes.push_out(is_in_both));
         }
         if contacts.is_empty() {
@@ -237,7 +237,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         first.is_near = true;
         match self.filter(pair).apply(&local, contact, &mut first.clipped) {
             Verdict::None if is_touching(&local, &contact, NEARLY_TOUCHING) => {
-                first.islands.add_touching(pair);
+                first.islands.touching.push(pair);
             }
             Verdict::None => {}
             Verdict::Contact(contact, upright) => {
@@ -245,7 +245,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
                 first.upright.extend(upright.map(|upright| (pair, upright)));
             }
             Verdict::Crossing(crossing, contact) => {
-                first.islands.add(crossing);
+                first.islands.crossings.push(crossing);
                 first.contacts.extend(contact.map(|contact| (pair, contact)));
             }
         }
@@ -311,7 +311,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
             let counts = || is_near(contact) || self.filter(*pair).is_local_minimum(contact);
             directions.add_if(contact.normal, counts);
         }
-        let is_overlap = islands.len() > 0;
+        let is_overlap = !islands.crossings.is_empty();
         contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
             is_near(contact)
                 || directions.has(contact.normal)
@@ -327,7 +327,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         // Surfaces are asked for only where something crosses.
-        let Some(pair) = islands.first() else { return };
+        let Some(Crossing { pair, .. }) = islands.crossings.first() else { return };
         if self.shapes.is_solid(0) || self.shapes.is_solid(1) {
             return;
         }
@@ -357,7 +357,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     ) {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
         deep::add_contacts(&self.shapes, self.pose, islands, contours, contacts);
-        for i in 0..islands.len() {
+        for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(local) = self.shapes.local(self.pose, crossing.pair) else { continue };
             let filter = self.filter(crossing.pair);

@@ -29,7 +29,7 @@ fn islands_without_a_reliable_contact_need_support() {
         for (pair, contact) in
             [([1, 1], None), ([1, 2], None), ([3, 2], Some(&good)), ([7, 7], None), ([7, 8], None)]
         {
-            islands.add(crossing(pair, contact, None));
+            islands.crossings.push(crossing(pair, contact, None));
         }
         assert!(islands.finish_first_pass(None));
         let held = [[1, 1], [1, 2], [3, 2]].map(|pair| islands.needs_support(pair));
@@ -40,11 +40,11 @@ fn islands_without_a_reliable_contact_need_support() {
         assert_eq!(settled, [true, true, false, false]);
     }
     islands.clear();
-    islands.add(crossing([1, 1], Some(&good), None));
+    islands.crossings.push(crossing([1, 1], Some(&good), None));
     assert!(!islands.finish_first_pass(None), "all is good");
     islands.clear();
-    islands.add(crossing([1, 1], None, None));
-    islands.add(crossing([1, 2], Some(&good), None));
+    islands.crossings.push(crossing([1, 1], None, None));
+    islands.crossings.push(crossing([1, 2], Some(&good), None));
     assert!(!islands.finish_first_pass(None), "the island is held");
 }
 
@@ -53,8 +53,8 @@ fn islands_without_a_reliable_contact_need_support() {
 fn of_two_sides_of_a_thin_body_the_nearer_one_counts() {
     for pair in [|thin, other| [thin, other], |thin, other| [other, thin]] {
         let mut islands = OverlapIslands::default();
-        islands.add(crossing(pair(5, 1), Some(&(DVec3::Y, 0.1)), None));
-        islands.add(crossing(pair(5, 2), Some(&(-DVec3::Y, 0.3)), None));
+        islands.crossings.push(crossing(pair(5, 1), Some(&(DVec3::Y, 0.1)), None));
+        islands.crossings.push(crossing(pair(5, 2), Some(&(-DVec3::Y, 0.3)), None));
         assert!(islands.finish_first_pass(None));
         assert!(islands.is_final(pair(5, 1)) && !islands.is_final(pair(5, 2)));
     }
@@ -68,7 +68,7 @@ fn one_contact_does_not_support_a_large_island() {
     let needs_support = |pairs: u32, contacts: u32| {
         let mut islands = OverlapIslands::default();
         for i in 0..pairs {
-            islands.add(crossing([1, i], Some(&good).filter(|_| i < contacts), None));
+            islands.crossings.push(crossing([1, i], Some(&good).filter(|_| i < contacts), None));
         }
         let needs_more = islands.finish_first_pass(None);
         assert_eq!(
@@ -91,7 +91,7 @@ fn of_contacts_both_ways_those_along_the_way_stay() {
     let islands = |normals: &[DVec3]| {
         let mut islands = OverlapIslands::default();
         for (i, &normal) in (1..).zip(normals) {
-            islands.add(crossing([i, i], Some(&(normal, 0.1)), None));
+            islands.crossings.push(crossing([i, i], Some(&(normal, 0.1)), None));
         }
         islands
     };
@@ -99,13 +99,13 @@ fn of_contacts_both_ways_those_along_the_way_stay() {
     assert!(!islands(&[DVec3::Y, DVec3::Y, aslant]).is_undecided());
     assert!(!islands(&[]).is_undecided());
     let mut both = islands(&[DVec3::Y, -DVec3::Y, aslant]);
-    assert!(both.is_undecided() && !both.has_separation());
-    assert!(both.finish_first_pass(Some(DVec3::Y)) && both.has_separation());
+    assert!(both.is_undecided() && both.separation.is_none());
+    assert!(both.finish_first_pass(Some(DVec3::Y)) && both.separation.is_some());
     assert_eq!([1, 2, 3].map(|i| both.is_final([i, i])), [true, false, true]);
     assert!(both.needs_support([2, 2]) && !both.agrees([2, 2], -DVec3::Y));
     assert!(both.agrees([2, 2], DVec3::X) && both.agrees([2, 2], aslant));
     let mut none = OverlapIslands::default();
-    none.add(crossing([1, 1], None, None));
+    none.crossings.push(crossing([1, 1], None, None));
     assert!(none.is_undecided(), "none is good");
 }
 
@@ -115,8 +115,8 @@ fn of_two_sides_that_push_against_each_other_the_nearer_one_stays() {
     let both = |up: f64, down: f64, lean: f64| {
         let mut islands = OverlapIslands::default();
         let leaning = DVec3::new(lean.sin(), -lean.cos(), 0.0);
-        islands.add(crossing([1, 1], Some(&(DVec3::Y, up)), None));
-        islands.add(crossing([1, 2], Some(&(leaning, down)), None));
+        islands.crossings.push(crossing([1, 1], Some(&(DVec3::Y, up)), None));
+        islands.crossings.push(crossing([1, 2], Some(&(leaning, down)), None));
         islands.finish_first_pass(None).then(|| [[1, 1], [1, 2]].map(|pair| islands.is_final(pair)))
     };
     assert_eq!(both(0.1, 0.3, 0.0), Some([true, false]));
@@ -133,11 +133,11 @@ fn an_island_pushed_to_both_sides_of_a_sheet_keeps_one() {
         let mut islands = OverlapIslands::default();
         for (i, (height, normal)) in (1..).zip(heights.into_iter().zip(normals)) {
             let sheet = Some(SheetSide { shape: Some(0), away: DVec3::Y, height });
-            islands.add(crossing([i, 1], Some(&(normal, 0.1)), sheet));
+            islands.crossings.push(crossing([i, 1], Some(&(normal, 0.1)), sheet));
         }
         // Far from these, all the same way.
         let sheet = Some(SheetSide { shape: Some(0), away: DVec3::Y, height: 1.0 });
-        islands.add(crossing([7, 7], Some(&(-DVec3::Y, 0.1)), sheet));
+        islands.crossings.push(crossing([7, 7], Some(&(-DVec3::Y, 0.1)), sheet));
         islands.finish_first_pass(None);
         [[1, 1], [2, 1], [7, 7]].map(|pair| islands.is_final(pair))
     };
@@ -156,7 +156,7 @@ fn few_contacts_do_not_push_through_a_sheet() {
         let mut islands = OverlapIslands::default();
         for i in 0..pairs {
             let good = Some(&down).filter(|_| i == 0);
-            islands.add(crossing(
+            islands.crossings.push(crossing(
                 [1, i],
                 good,
                 Some(SheetSide { shape: Some(0), away: DVec3::Y, height }),
