@@ -18,16 +18,10 @@ use super::pose::PairPose;
 use crate::mesh::Change;
 
 /// State of a pair: data `S` of its shapes, and candidates with hints `H`.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct PairState<S, H> {
     pub(super) shapes: S,
     pub(super) memory: CandidateMemory<H>,
-}
-
-impl<S: Default, H> Default for PairState<S, H> {
-    fn default() -> Self {
-        Self { shapes: S::default(), memory: CandidateMemory::default() }
-    }
 }
 
 /// A pair of subshapes that may be within the margin.
@@ -50,42 +44,17 @@ impl<H: Default> Candidate<H> {
 }
 
 /// Candidates of the last descent, and the last query.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct CandidateMemory<H> {
-    /// `None` during a query, and after one that a panic has ended.
-    last: Option<LastQuery>,
+    /// Pose, prediction distance, and number of manifolds left. `None` during a query, and after one that a
+    /// panic has ended.
+    last: Option<(Pose, Real, usize)>,
     /// True if the manifolds of the last query are patches.
     pub(super) has_patches: Option<bool>,
     pub(super) slack: Slack,
     /// In the order of subshapes.
     pub(super) candidates: Vec<Candidate<H>>,
     demand: HighWaterMark,
-}
-
-/// A query, and the number of manifolds that it left.
-#[derive(Copy, Clone, Debug, PartialEq)]
-struct LastQuery {
-    pos12: Pose,
-    prediction: Real,
-    manifold_count: usize,
-}
-
-impl LastQuery {
-    fn new(pose: &PairPose, manifold_count: usize) -> Self {
-        Self { pos12: pose.pos12, prediction: pose.prediction, manifold_count }
-    }
-}
-
-impl<H> Default for CandidateMemory<H> {
-    fn default() -> Self {
-        Self {
-            last: None,
-            has_patches: None,
-            slack: Slack::default(),
-            candidates: Vec::new(),
-            demand: HighWaterMark::default(),
-        }
-    }
 }
 
 impl<H> CandidateMemory<H> {
@@ -106,7 +75,7 @@ impl<H> CandidateMemory<H> {
 
     /// Returns true if the last query had the same pose and left as many manifolds.
     pub(super) fn is_unchanged(&self, pose: &PairPose, manifold_count: usize) -> bool {
-        self.last == Some(LastQuery::new(pose, manifold_count))
+        self.last == Some((pose.pos12, pose.prediction, manifold_count))
     }
 
     /// Begins a query. Forgets the candidates if the last query was cut short by a panic.
@@ -118,7 +87,7 @@ impl<H> CandidateMemory<H> {
 
     /// Ends a query.
     pub(super) fn end(&mut self, pose: &PairPose, manifold_count: usize) {
-        self.last = Some(LastQuery::new(pose, manifold_count));
+        self.last = Some((pose.pos12, pose.prediction, manifold_count));
         if let Some(limit) = self.demand.update(self.candidates.len()) {
             self.candidates.shrink_to(limit);
         }
@@ -191,20 +160,18 @@ pub(super) fn state_in<'a, M, C, S, H>(
     new_pair: impl FnOnce(),
 ) -> &'a mut PairState<S, H>
 where
-    PairState<S, H>: Clone + Default + Send + Sync + 'static,
+    PairState<S, H>: WorkspaceData + Default,
 {
     if workspace.is_none() {
         manifolds.clear();
     }
-    let is_ours =
-        |workspace: &ContactManifoldsWorkspace| workspace.0.is::<Stored<PairState<S, H>>>();
+    let is_ours = |workspace: &ContactManifoldsWorkspace| workspace.0.is::<PairState<S, H>>();
     if !workspace.as_ref().is_some_and(is_ours) {
         new_pair();
-        *workspace = Some(Stored(PairState::<S, H>::default()).into());
+        *workspace = Some(PairState::<S, H>::default().into());
     }
     let state = workspace.as_mut().and_then(|workspace| workspace.0.downcast_mut());
-    let Stored(state) = state.expect("the workspace was made of this type just now");
-    state
+    state.expect("the workspace was made of this type just now")
 }
 
 /// Stands for our state in a snapshot: an empty workspace of Parry's.
@@ -214,11 +181,11 @@ where
 static PLACEHOLDER: LazyLock<VoxelsShapeContactManifoldsWorkspace<2>> =
     LazyLock::new(VoxelsShapeContactManifoldsWorkspace::new);
 
-/// State of a pair of any kind, as the host keeps it.
-#[derive(Clone)]
-struct Stored<S>(S);
-
-impl<S: Clone + Send + Sync + 'static> WorkspaceData for Stored<S> {
+impl<S, H> WorkspaceData for PairState<S, H>
+where
+    S: Clone + Send + Sync + 'static,
+    H: Clone + Send + Sync + 'static,
+{
     fn as_typed_workspace_data(&self) -> TypedWorkspaceData<'_> {
         TypedWorkspaceData::VoxelsShapeContactManifoldsWorkspace(&PLACEHOLDER)
     }
