@@ -33,6 +33,7 @@ thread_local! {
 }
 
 /// Spare manifolds and lists of a thread.
+#[derive(Default)]
 struct Pool<M, C> {
     next: Vec<ContactManifold<M, C>>,
     spare: Vec<ContactManifold<M, C>>,
@@ -42,14 +43,6 @@ struct Pool<M, C> {
     /// Parts of the host's manifolds and the indices of these, sorted.
     old_parts: Vec<(u32, u32)>,
     demand: HighWaterMark,
-}
-
-impl<M, C> Default for Pool<M, C> {
-    fn default() -> Self {
-        let (next, spare, previous_points, old_points, old_parts) = Default::default();
-        let demand = HighWaterMark::default();
-        Self { next, spare, previous_points, old_points, old_parts, demand }
-    }
 }
 
 /// A point of the last query, and the part in whose frame it is.
@@ -197,23 +190,23 @@ pub(super) fn write_every<Q, M, C>(
             writer.retire(old);
             old += 1;
         };
-        if order == Ordering::Equal {
-            let (manifold, pool) = (&mut writer.manifolds[old], &mut *writer.pool);
+        let write = |pool: &mut Pool<M, C>, manifold: &mut ContactManifold<M, C>| {
             write_points(points, &mut pool.previous_points, manifold);
-            set_poses(points, manifold);
+            let [pose1, pose2] = points.poses;
+            manifold.set_subshape_pos1(pose1);
+            manifold.set_subshape_pos2(pose2);
             if were_patches {
                 take_data(manifold, &pool.old_points);
             }
+        };
+        if order == Ordering::Equal {
+            write(&mut writer.pool, &mut writer.manifolds[old]);
             writer.keep_old(old);
             old += 1;
         } else {
             let mut manifold = writer.take_spare();
             [manifold.subshape1, manifold.subshape2] = contact.0;
-            write_points(points, &mut writer.pool.previous_points, &mut manifold);
-            set_poses(points, &mut manifold);
-            if were_patches {
-                take_data(&mut manifold, &writer.pool.old_points);
-            }
+            write(&mut writer.pool, &mut manifold);
             writer.keep_new(manifold);
         }
     }
@@ -253,12 +246,6 @@ fn with_data<C: Default + Copy>(point: &TrackedContact<()>, data: C) -> TrackedC
     let TrackedContact { local_p1, local_p2, fid1, fid2, dist, .. } = *point;
     let point = TrackedContact::new(local_p1, local_p2, fid1, fid2, dist);
     TrackedContact { data, ..point }
-}
-
-fn set_poses<M, C>(points: &ContactPoints, manifold: &mut ContactManifold<M, C>) {
-    let [pose1, pose2] = points.poses;
-    manifold.set_subshape_pos1(pose1);
-    manifold.set_subshape_pos2(pose2);
 }
 
 /// Gives the points of a manifold the data that they had in patches.
