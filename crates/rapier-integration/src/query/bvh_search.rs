@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use arrayvec::ArrayVec;
 use glamx::{DMat3, DVec3, Vec3};
 use parry3d::math::{Real, Vector};
-use parry3d::partitioning::{Bvh, BvhNode, BvhNodeIndex, TraversalAction};
+use parry3d::partitioning::{BvhNodeIndex, TraversalAction};
 use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair};
 use sbbk_core::traverse::Placement;
 
@@ -141,15 +141,12 @@ impl BvhSearch<'_> {
             }
             let is_first = node1.triangle.is_none()
                 && (node2.triangle.is_some() || node1.bounds.size() >= node2.bounds.size());
-            let mut pairs: ArrayVec<_, 2> = if is_first {
-                self.children(0, &node1).map(|child| [child, node2]).collect()
-            } else {
-                self.children(1, &node2).map(|child| [node1, child]).collect()
-            };
-            let mut keyed: ArrayVec<_, 2> = pairs
-                .drain(..)
-                .map(|pair| (bound(&pair[0].bounds, &pair[1].bounds), pair))
-                .collect();
+            let parent = if is_first { &node1 } else { &node2 };
+            let children = self.children(usize::from(!is_first), parent).into_iter();
+            let pairs =
+                children.map(|child| if is_first { [child, node2] } else { [node1, child] });
+            let keyed = pairs.map(|[one, two]| (bound(&one.bounds, &two.bounds), [one, two]));
+            let mut keyed: ArrayVec<_, 2> = keyed.collect();
             if let [(first, _), (second, _)] = keyed[..]
                 && first < second
             {
@@ -266,11 +263,17 @@ impl BvhSearch<'_> {
         Node { bounds, index: None, triangle: None }
     }
 
-    fn children(&self, mesh: usize, node: &Node) -> impl Iterator<Item = Node> {
-        children(self.meshes[mesh].mesh.bvh(), node.index).into_iter().map(move |(index, child)| {
+    fn children(&self, mesh: usize, node: &Node) -> ArrayVec<Node, 2> {
+        let (mut children, parent) = (ArrayVec::new(), node.index);
+        self.meshes[mesh].mesh.bvh().traverse_indexed(parent, |child, index| {
+            if parent.is_some_and(|parent| parent.0 == index.0) {
+                return TraversalAction::Continue;
+            }
             let bounds = self.placed(mesh, child.mins().as_dvec3(), child.maxs().as_dvec3());
-            Node { bounds, index: Some(index), triangle: child.leaf_data() }
-        })
+            children.push(Node { bounds, index: Some(index), triangle: child.leaf_data() });
+            TraversalAction::Prune
+        });
+        children
     }
 
     fn placed(&self, mesh: usize, min: DVec3, max: DVec3) -> PlacedBox {
@@ -342,17 +345,4 @@ impl PlacedBox {
         }
         if start <= end * (1.0 + ROUNDING) { start * (1.0 - ROUNDING) } else { f64::INFINITY }
     }
-}
-
-/// Children of a node, or of the virtual node above the root.
-fn children(bvh: &Bvh, parent: Option<BvhNodeIndex>) -> ArrayVec<(BvhNodeIndex, BvhNode), 2> {
-    let mut children = ArrayVec::new();
-    bvh.traverse_indexed(parent, |node, index| {
-        if parent.is_some_and(|parent| parent.0 == index.0) {
-            return TraversalAction::Continue;
-        }
-        children.push((index, *node));
-        TraversalAction::Prune
-    });
-    children
 }
