@@ -232,45 +232,6 @@ impl Meshes<'_> {
         });
         self.store.count_walk();
     }
-
-    /// Returns the contact that moves the smaller mesh out of the larger one, by the shortest way
-    /// from its middle, and its triangles. Call this if no other contact was found.
-    ///
-    /// Tests one vertex, unless the middle of the smaller mesh is known to be in both: a mesh that pierces the surface
-    /// has contacts.
-    fn find_push_out(&mut self, is_in_both: bool) -> Option<TriangleHit> {
-        let outer = self.pair.larger();
-        let held = &self.pair.meshes[1 - outer];
-        let vertex = self.pair.pose.in_other(1 - outer, held.corners(0)[0]);
-        let surface = self.surfaces[outer].as_ref()?;
-        if !is_in_both {
-            if self.room.is_some() {
-                return None;
-            }
-            self.pair.exit(vertex, surface, self.inside)?;
-            if !self.is_solid(outer) {
-                *self.inside = InsideTest::NoSolid;
-                return None;
-            }
-        }
-        let middle = self.pair.pose.in_other(1 - outer, held.ball().centre);
-        let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
-            let (triangle, exit, behind) = surface.nearest(from)?;
-            (behind >= BEHIND).then_some((triangle, exit, from))
-        })?;
-        let mut subshapes = [0; 2];
-        subshapes[outer] = triangle;
-        let origin = self.pair.meshes[0].corners(subshapes[0])[0];
-        let placement = &self.pair.pose.placement12;
-        let mut points = [exit, from].map(|point| in_local(placement, outer, point, origin));
-        if outer == 1 {
-            points.reverse();
-        }
-        let [point1, point2] = points;
-        let normal = (point1 - point2).try_normalize()?;
-        let distance = (point2 - point1).dot(normal);
-        Some((subshapes, TriangleSurfaceContact::push_out(normal, distance, points)))
-    }
 }
 
 impl TriangleShapes for Meshes<'_> {
@@ -321,8 +282,41 @@ impl TriangleShapes for Meshes<'_> {
         ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
     }
 
+    /// Leads by the shortest way from the middle of the smaller mesh. Tests one vertex, unless the middle is known to be
+    /// in both: a mesh that pierces the surface has contacts.
     fn push_out(&mut self, is_in_both: bool) -> Option<TriangleHit> {
-        self.find_push_out(is_in_both).inspect(|_| self.store.counters.push_outs.raise())
+        let outer = self.pair.larger();
+        let held = &self.pair.meshes[1 - outer];
+        let vertex = self.pair.pose.in_other(1 - outer, held.corners(0)[0]);
+        let surface = self.surfaces[outer].as_ref()?;
+        if !is_in_both {
+            if self.room.is_some() {
+                return None;
+            }
+            self.pair.exit(vertex, surface, self.inside)?;
+            if !self.is_solid(outer) {
+                *self.inside = InsideTest::NoSolid;
+                return None;
+            }
+        }
+        let middle = self.pair.pose.in_other(1 - outer, held.ball().centre);
+        let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
+            let (triangle, exit, behind) = surface.nearest(from)?;
+            (behind >= BEHIND).then_some((triangle, exit, from))
+        })?;
+        let mut subshapes = [0; 2];
+        subshapes[outer] = triangle;
+        let origin = self.pair.meshes[0].corners(subshapes[0])[0];
+        let placement = &self.pair.pose.placement12;
+        let mut points = [exit, from].map(|point| in_local(placement, outer, point, origin));
+        if outer == 1 {
+            points.reverse();
+        }
+        let [point1, point2] = points;
+        let normal = (point1 - point2).try_normalize()?;
+        let distance = (point2 - point1).dot(normal);
+        self.store.counters.push_outs.raise();
+        Some((subshapes, TriangleSurfaceContact::push_out(normal, distance, points)))
     }
 
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {

@@ -152,8 +152,8 @@ pub(crate) trait TriangleShapes: Sync {
     /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
     fn separation(&self) -> Option<DVec3>;
 
-    /// Returns the push-out if one shape is wholly inside the other. `is_in_both`: the shapes cross, and the middle of
-    /// the smaller one is known to be in both.
+    /// Returns the push-out of one shape wholly inside the other, where no contact was found. `is_in_both`: the shapes
+    /// cross, and the middle of the smaller one is known to be in both.
     fn push_out(&mut self, _is_in_both: bool) -> Option<TriangleHit> {
         None
     }
