@@ -7,13 +7,15 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::query::{PointQuery, Ray};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{Around, Side, SurfaceKind};
-use sbbk_core::traverse::{DescentCounts, NodePair, PairFrame, begin_descent, descend_from};
+use sbbk_core::traverse::{
+    DescentCounts, NodePair, PairFrame, Placement, begin_descent, descend_from,
+};
 use sbbk_core::tree::Tree;
+use sbbk_core::volumes::Sphere;
 
 use super::bvh_descent::BvhDescent;
 use super::chunks::{has_threads, in_chunks};
 use super::far::are_few;
-use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::query::{Moving, Pair};
 use super::ranges::{filter_distance, filter_unit, lateral_culling, reach};
@@ -49,6 +51,9 @@ const SUNK: f64 = 0.5;
 /// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low halls. Lower: small fast
 /// bodies fall through floors and walls that are solids.
 const SLAB: Real = 0.1;
+
+/// Share of an f32 distance that is a lower bound of the exact one.
+const SURE: f64 = 0.99;
 
 impl MeshPair<'_> {
     /// Returns 1 if the box of mesh 2 is larger than that of mesh 1, else 0.
@@ -111,6 +116,35 @@ impl MeshPair<'_> {
             *test = InsideTest::outside(placement, near.distance(point));
         }
         is_inside.then_some(near)
+    }
+}
+
+/// Last result of the test whether the smaller mesh is inside the larger one. Spares most queries a test.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum InsideTest {
+    #[default]
+    Unknown,
+    /// The larger mesh is no solid.
+    NoSolid,
+    /// A point of the smaller mesh was at least this far outside at this placement of the smaller mesh.
+    Outside(Placement, f64),
+}
+
+impl InsideTest {
+    /// A point is `distance` outside at a placement of the smaller mesh.
+    fn outside(placement: &Placement, distance: f32) -> Self {
+        Self::Outside(*placement, SURE * f64::from(distance))
+    }
+
+    /// Returns true if a mesh with points in `ball` cannot have come inside.
+    fn is_outside(&self, ball: Sphere, placement: &Placement) -> bool {
+        match self {
+            Self::Unknown => false,
+            Self::NoSolid => true,
+            Self::Outside(before, distance) => {
+                placement.motion_bound(before, ball.centre, ball.radius) < *distance
+            }
+        }
     }
 }
 

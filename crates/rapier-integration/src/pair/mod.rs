@@ -10,7 +10,7 @@
 //! | [`bvh_descent`] | candidates from Parry's BVHs |
 //! | [`ranges`] | how far contacts are searched and filtered |
 //! | [`far`] | contacts beyond the reach |
-//! | [`surface`], [`borders`], [`islands`], [`passed`], [`inside`] | contacts of surfaces from contacts of triangles |
+//! | [`surface`], [`borders`], [`islands`], [`passed`] | contacts of surfaces from contacts of triangles |
 //! | [`deep`], [`contour`] | contacts of solids deep in each other |
 //! | [`field`], [`pose`], [`triangle_contacts`] | height fields, poses, points of two triangles |
 //! | [`convex`] | a mesh and convex shapes |
@@ -24,7 +24,6 @@ mod convex;
 mod deep;
 mod far;
 mod field;
-mod inside;
 mod islands;
 mod mesh_field;
 mod mesh_mesh;
