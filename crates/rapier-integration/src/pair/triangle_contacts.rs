@@ -41,9 +41,10 @@ pub(super) fn write_points(
     let PairPose { pos12, placement12, .. } = pose;
     points.clear();
     let Some(normal1) = constrained_normal(contact, cones, pos12) else { return };
-    if normal1.is_changed {
+    let is_turned = normal1 != contact.normal.as_vec3();
+    if is_turned {
         let [t1, t2] = &triangles.corners;
-        clip(t1, t2, normal1.normal.as_dvec3().normalize(), clipped);
+        clip(t1, t2, normal1.as_dvec3().normalize(), clipped);
     }
     if cones.iter().any(Option::is_some) {
         clipped.retain(|point| is_plausible(point, contact));
@@ -55,12 +56,7 @@ pub(super) fn write_points(
         let point2 = placement12.to_frame2(point.point2, triangles.origin).as_vec3();
         TrackedContact::new(point1, point2, feature1, feature2, point.distance as Real)
     }));
-    *normals = [normal1.normal, pos12.rotation.inverse() * -normal1.normal];
-}
-
-pub(super) struct ConstrainedNormal {
-    pub(super) normal: Vector,
-    is_changed: bool,
+    *normals = [normal1, pos12.rotation.inverse() * -normal1];
 }
 
 /// Returns the normal in the normal cones of both triangles; `None` if they exclude it.
@@ -69,16 +65,15 @@ pub(super) fn constrained_normal(
     contact: &TriangleContact,
     cones: Cones<'_>,
     pos12: &Pose,
-) -> Option<ConstrainedNormal> {
-    let free = contact.normal.as_vec3();
-    let mut normal = free;
+) -> Option<Vector> {
+    let mut normal = contact.normal.as_vec3();
     if cones.iter().any(Option::is_some) {
-        let mut normal2 = pos12.rotation.inverse() * -free;
+        let mut normal2 = pos12.rotation.inverse() * -normal;
         if !<(_, _)>::from(cones).project_local_normals(pos12, &mut normal, &mut normal2) {
             return None;
         }
     }
-    Some(ConstrainedNormal { normal, is_changed: normal != free })
+    Some(normal)
 }
 
 /// Returns false for a point that a constrained normal puts more than five times as deep as the

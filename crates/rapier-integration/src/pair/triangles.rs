@@ -184,7 +184,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             normal = constrained_normal(contact, cones, &self.pose.pos12);
             has_cones = cones.iter().any(Option::is_some);
         });
-        let normal = normal?.normal;
+        let normal = normal?;
         let point = (origin.as_dvec3() + contact.point1).as_vec3();
         let mut distance = contact.distance as Real;
         if has_cones {
