@@ -1,20 +1,6 @@
 //! A pair of shapes: from a pose to contact manifolds.
 //!
-//! | file | holds |
-//! |---|---|
-//! | [`update`], [`query`] | the pipeline, and the traits of a kind of pair |
-//! | [`state`] | what a host keeps with a pair: candidates, slack |
-//! | [`mesh_mesh`], [`mesh_field`] | the kinds whose shapes are both made of triangles |
-//! | [`triangles`], [`triangle_shapes`] | contacts of these kinds, in one pass or two |
-//! | [`chunks`] | chunks of a heavy pair, on several threads |
-//! | [`bvh_descent`] | candidates from Parry's BVHs |
-//! | [`ranges`] | how far contacts are searched and filtered |
-//! | [`far`] | contacts beyond the reach |
-//! | [`surface`], [`borders`], [`islands`], [`passed`] | contacts of surfaces from contacts of triangles |
-//! | [`deep`], [`contour`] | contacts of solids deep in each other |
-//! | [`field`], [`pose`], [`triangle_contacts`] | height fields, poses, points of two triangles |
-//! | [`convex`] | a mesh and convex shapes |
-//! | [`reduce`], [`write`](mod@write) | contact reduction, manifolds |
+//! [`update`] is the pipeline. The table of steps in `ARCHITECTURE.md` says which file does what.
 
 mod borders;
 mod bvh_descent;
