@@ -109,7 +109,7 @@ impl SbbkDispatcher {
         let Some(view) = self.store.view(mesh) else { return SurfaceKind::Sheet };
         let mut known = PairMesh::default();
         known.update(&view);
-        known.acquire_surface(&view).map_or(SurfaceKind::Sheet, |surface| surface.kind())
+        known.acquire(&view, false).map_or(SurfaceKind::Sheet, |surface| surface.kind())
     }
 
     /// Counts of meshes and queries so far. Takes time in proportion to the number of meshes.

@@ -66,32 +66,21 @@ impl PairMesh {
         change
     }
 
-    /// Returns the tree of a mesh, if there is one, and its surface. Call [`update`](Self::update)
-    /// first.
+    /// Returns the surface of a rigid mesh, with its [tree](LazySurface::tree) if there is one. Call
+    /// [`update`](Self::update) first.
     ///
     /// The first query does not look for an unregistered mesh: that takes a hash of all content, and
-    /// many pairs never touch.
+    /// many pairs never touch. Later ones build the tree of a small mesh, if they need it.
     pub(crate) fn acquire<'a>(
         &'a mut self,
         view: &'a MeshView<'a>,
-    ) -> Option<(Option<&'a Tree>, LazySurface<'a>)> {
-        let Self::Rigid(known) = self else { return None };
-        let (mesh, store) = (view.mesh, view.store);
+        needs_tree: bool,
+    ) -> Option<LazySurface<'a>> {
+        let (Self::Rigid(known), MeshView { mesh, store, .. }) = (self, view) else { return None };
         let is_first = known.search_registered(view);
-        if !is_first && is_small(mesh.indices().len()) {
+        if needs_tree && !is_first && is_small(mesh.indices().len()) {
             store.build_within_budget(mesh, known.data.get_or_init(|| store.entry(mesh)));
         }
-        let surface = known.surface(view);
-        Some((surface.data.get().and_then(|data| data.tree()), surface))
-    }
-
-    /// Returns the surface of a mesh that touches no other mesh and needs no tree.
-    pub(crate) fn acquire_surface<'a>(
-        &'a mut self,
-        view: &'a MeshView<'a>,
-    ) -> Option<LazySurface<'a>> {
-        let Self::Rigid(known) = self else { return None };
-        known.search_registered(view);
         Some(known.surface(view))
     }
 }
@@ -160,7 +149,12 @@ pub(crate) struct LazySurface<'a> {
     memo: PlaceMemo,
 }
 
-impl LazySurface<'_> {
+impl<'a> LazySurface<'a> {
+    /// Returns the tree of the mesh, if there is one.
+    pub(crate) fn tree(&self) -> Option<&'a Tree> {
+        self.data.get()?.tree()
+    }
+
     #[inline]
     fn data(&self) -> &Arc<MeshData> {
         self.data.get_or_init(|| self.view.store.entry(self.view.mesh))
@@ -261,7 +255,7 @@ mod tests {
     fn surface(known: &mut PairMesh, store: &MeshStore, mesh: &TriMesh) -> [bool; 2] {
         let view = store.view(mesh).unwrap();
         known.update(&view);
-        let (_, surface) = known.acquire(&view).unwrap();
+        let surface = known.acquire(&view, true).unwrap();
         [surface.near.is_none(), surface.kind() == SurfaceKind::Solid]
     }
 
@@ -305,7 +299,7 @@ mod tests {
         for has_tree in [false, true] {
             let view = store.view(&mesh).unwrap();
             known.update(&view);
-            assert_eq!(known.acquire(&view).unwrap().0.is_some(), has_tree);
+            assert_eq!(known.acquire(&view, true).unwrap().tree().is_some(), has_tree);
         }
     }
 

@@ -85,8 +85,8 @@ impl<'a> Pair for FieldPair<'a> {
         }
         let radius = self.mesh.ball().radius;
         let prediction = self.pose.prediction;
-        let surface = self.config.has_surfaces().then(|| known_mesh.acquire_surface(&self.mesh));
-        let surface = surface.flatten();
+        let has_surfaces = self.config.has_surfaces();
+        let surface = has_surfaces.then(|| known_mesh.acquire(&self.mesh, false)).flatten();
         let filter_distance = filter_distance(surface.is_some(), radius);
         let shapes = MeshAndField {
             pair: self,

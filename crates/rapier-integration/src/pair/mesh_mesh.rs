@@ -168,11 +168,14 @@ impl<'a> Pair for MeshPair<'a> {
             (*in_room, *inside) = Default::default();
         }
         let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
-        let known =
-            if are_rigid { [known1.acquire(mesh1), known2.acquire(mesh2)] } else { [None, None] };
-        let [tree1, tree2] = known.each_ref().map(|known| known.as_ref()?.0);
+        let known = if are_rigid {
+            [known1.acquire(mesh1, true), known2.acquire(mesh2, true)]
+        } else {
+            [None, None]
+        };
+        let [tree1, tree2] = known.each_ref().map(|known| known.as_ref()?.tree());
         let trees = tree1.zip(tree2).map(<[_; 2]>::from);
-        let surfaces = known.map(|known| Some(known?.1).filter(|_| self.config.has_surfaces()));
+        let surfaces = known.map(|known| known.filter(|_| self.config.has_surfaces()));
         let [radius1, radius2] = [mesh1, mesh2].map(|mesh| mesh.ball().radius);
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);

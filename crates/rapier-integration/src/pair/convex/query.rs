@@ -74,7 +74,7 @@ impl<'a> Pair for ConvexPair<'a> {
         }
         // A ball has one point, and rolls over walls within a mesh.
         let needs_surface = self.config.leave_solids() || self.has_surface() && !self.is_ball();
-        let surface = needs_surface.then(|| known_mesh.acquire_surface(&self.mesh)).flatten();
+        let surface = needs_surface.then(|| known_mesh.acquire(&self.mesh, false)).flatten();
         (change, ConvexQuery { pair: self, part_data, surface })
     }
 }
