@@ -20,6 +20,7 @@ use crate::stats::Counters;
 use crate::{SbbkInternals, SbbkStats};
 
 /// The meshes of a dispatcher and its clones.
+#[derive(Default)]
 pub(crate) struct MeshStore {
     /// Number of this store among all stores of the process.
     pub(super) id: u64,
@@ -69,16 +70,8 @@ struct Contents {
 impl MeshStore {
     pub(crate) fn new(options: BuildOptions, recent_limit: usize) -> Self {
         static NEXT_ID: AtomicU64 = AtomicU64::new(0);
-        Self {
-            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
-            options,
-            recent_limit,
-            contents: Mutex::default(),
-            registered: RwLock::default(),
-            registrations: Arc::default(),
-            budget: BuildBudget::default(),
-            counters: Counters::default(),
-        }
+        let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
+        Self { id, options, recent_limit, ..Self::default() }
     }
 
     /// Registers a mesh, with its tree and surface: `shape` by its address, a large mesh without a
