@@ -3,13 +3,15 @@ use std::collections::BTreeMap;
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
-use rapier3d::parry::query::{PointQuery, TrackedContact};
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
+use rapier3d::math::Real;
+use rapier3d::parry::query::{DefaultQueryDispatcher, PointQuery, QueryDispatcher, TrackedContact};
+use rapier3d::parry::shape::{Cuboid, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
 use super::shapes::shapes;
 use crate::support::{
     Manifold, Question, bits, distance, every, per_triangle, rotation, shape, shape_with,
+    touching_shapes,
 };
 
 /// Would catch contacts at edges between triangles, points beside the body, and a body without
@@ -179,4 +181,31 @@ fn flags_of_a_rigid_mesh_change_no_contact() {
         }
     }
     assert!(count > 300, "{count} contacts");
+}
+
+/// Cuboids that cross the edge of a box of 12 to 432 triangles, by up to 0.04. Would catch contacts whose normals come from a
+/// face that the cuboid has half passed. These led into the box, and were up to 27 times too deep.
+#[test]
+fn cuboids_over_edges_are_not_pushed_in() {
+    let (mut random, mut contacts, mut too_deep) = (Rand32::new(3), 0, 0);
+    let dispatcher = SbbkDispatcher::default();
+    for i in 0..3000 {
+        let mut sides = |low: Real, high: Real| {
+            Vec3::from_array([(); 3].map(|()| low + (high - low) * random.rand_float()))
+        };
+        let (half, of_body, place) = (sides(0.2, 0.6), sides(0.1, 0.4), sides(-0.2, 0.2));
+        // Away from the origin: lines through the origin seldom lead to edges.
+        let mesh = shape(&mesh::cuboid(half, 1 + i % 6).mapped(|vertex| vertex + place));
+        let [solid, body] = [half, of_body].map(Cuboid::new);
+        let pose = touching_shapes(&mut random, [&mesh, &body], 3.0, 0.01 * (1 + i % 4) as Real);
+        let in_solid = Pose3::from_translation(-place) * pose;
+        let truth = DefaultQueryDispatcher.contact(&in_solid, &solid, &body, 0.0).unwrap();
+        let truth = truth.map_or(0.0, |truth| truth.dist);
+        for manifold in Question::new(&mesh, &body, pose).fresh(&dispatcher) {
+            contacts += 1;
+            too_deep += usize::from(distance(&manifold) < 2.0 * truth - 0.01);
+        }
+    }
+    println!("{too_deep} of {contacts} contacts are too deep");
+    assert!(contacts > 3000 && 400 * too_deep < contacts, "{too_deep} of {contacts}");
 }

@@ -137,8 +137,8 @@ impl ConvexQuery<'_> {
             let contact = ghosts.on_faces[i];
             ghosts.list_nearby(contact);
             let face = ghosts.nearby.iter().find_map(|&other| {
-                let (of, _) = contacts[other as usize];
-                self.with_pair(of, scratch, |pair| pair.crossing_face_contact())?
+                let (of, own) = (contacts[other as usize].0, &contacts[contact as usize].1.contact);
+                self.with_pair(of, scratch, |pair| pair.face_contact_for(own))?
             });
             if let Some(face) = face {
                 contacts[contact as usize].1.take_normal(&face);

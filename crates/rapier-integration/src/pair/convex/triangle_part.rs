@@ -20,6 +20,14 @@ use crate::pair::ranges::{filter_distance, filter_unit};
 use crate::pair::reduce::ContactSummary;
 use crate::pair::surface::LIP;
 
+/// Least cosine between the normals of a contact and of a face whose normal it takes. Higher: shapes deep in a mesh stumble
+/// over internal edges. Lower: shapes half within a wall are pushed through it.
+const AGAINST: f64 = -0.05;
+
+/// Greatest depth along the normal of a face, as a share of the height of the part, that never shows a part beyond the face.
+/// Higher: shapes over an edge of a box are pushed in. Lower: tips stumble over internal edges.
+const SHALLOW: f64 = 0.1;
+
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {
     pub(super) pair: &'a ConvexPair<'a>,
@@ -219,8 +227,19 @@ impl TrianglePartPair<'_> {
         corners.iter().any(|corner| normal.dot(*corner) > LEVEL * corner.length())
     }
 
+    /// Returns the contact along the normal of the triangle, for another contact of the part. `None` if the bodies do not cross
+    /// along it. `None`, too, if it leads against the other contact, unless it is [`SHALLOW`].
+    pub(super) fn face_contact_for(&self, other: &ConvexContact) -> Option<ConvexContact> {
+        let face = self.crossing_face_contact()?;
+        let reach = |direction| self.placed.extent.reach(self.part.shape, direction);
+        let height = || reach(face.normal) + reach(-face.normal);
+        let is_safe =
+            other.normal.dot(face.normal) >= AGAINST || -face.distance <= SHALLOW * height();
+        is_safe.then_some(face)
+    }
+
     /// Returns the contact along the normal of the triangle, if the bodies cross along it somewhere.
-    pub(super) fn crossing_face_contact(&self) -> Option<ConvexContact> {
+    fn crossing_face_contact(&self) -> Option<ConvexContact> {
         let corners = &self.placed.in_part(self.corners);
         let (contact, feature) = (self.face_contact(corners)?, Feature::Face);
         let contact = PartContact { contact, feature, source: NormalSource::Neighbour };
