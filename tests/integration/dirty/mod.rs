@@ -11,6 +11,8 @@ use rapier3d::pipeline::PhysicsWorld;
 
 use crate::worlds::on_ground;
 
+/// Meshes with triangles that are there several times.
+mod doubles;
 /// Meshes that fall on flat grounds.
 mod falls;
 /// Bodies that slide and roll over floors.

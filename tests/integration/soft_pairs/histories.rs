@@ -189,6 +189,6 @@ fn contacts_are_those_of_a_rigid_mesh_built_anew_after_any_history() {
         };
         let config = Config { failure_persistence: None, ..Config::with_cases(150) };
         TestRunner::new(config).run(&history(), case).unwrap();
-        assert!(contacts.get() >= 20_000, "only {} contacts with shape {kind}", contacts.get());
+        assert!(contacts.get() >= 10_000, "only {} contacts with shape {kind}", contacts.get());
     }
 }

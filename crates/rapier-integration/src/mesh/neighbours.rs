@@ -4,10 +4,10 @@ use std::sync::{Mutex, PoisonError};
 
 use glamx::DVec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::math::Real;
+use parry3d::math::{Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::TriMesh;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
@@ -56,6 +56,14 @@ impl MeshFacets<'_> {
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
         })
+    }
+
+    /// Returns true if an earlier triangle has the same corners.
+    pub(crate) fn is_double(self, triangle: u32) -> bool {
+        match self.twins {
+            Twins::All(surface, _) => surface.is_double(triangle),
+            Twins::Near(known) => known.with(self.mesh, triangle, |one| one.is_double),
+        }
     }
 
     /// Returns the first triangle of a crowd or a small component. If that triangle is a face, so are all.
@@ -136,7 +144,8 @@ impl Facets for MeshFacets<'_> {
 
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let near = BvhNode::leaf(box_between(corners), 0);
-        let _ = self.mesh.bvh().leaves(|node| node.intersects(&near)).try_for_each(visit);
+        let near = self.mesh.bvh().leaves(|node| node.intersects(&near));
+        let _ = near.filter(|&triangle| !self.is_double(triangle)).try_for_each(visit);
     }
 
     fn memo(&self) -> Option<&PlaceMemo> {
@@ -242,7 +251,56 @@ const ROUNDING: f64 = 1.0e-12;
 #[derive(Clone, Debug, Default)]
 struct Neighbour {
     twins: [Option<u32>; 3],
+    /// See [`Surface::is_double`].
+    is_double: bool,
     flags: TriangleFlags,
+}
+
+impl Neighbour {
+    /// Finds the neighbours of a triangle. Vertices at one place are one vertex, and doubles have no neighbours, as in
+    /// [`Surface`].
+    fn new(mesh: &TriMesh, triangle: u32) -> Self {
+        let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
+        let own = corners(triangle);
+        let shares_edge = |other: &u32| {
+            let theirs = corners(*other);
+            own.into_iter().filter(|corner| theirs.contains(corner)).count() > 1
+        };
+        let bounds = mesh.triangle(triangle).local_aabb();
+        let near = mesh.bvh().intersect_aabb(&bounds);
+        let mut near: Vec<u32> = near.filter(shares_edge).collect();
+        near.sort_unstable();
+        let mut known = FxHashSet::default();
+        near.retain(|&other| known.insert(places(corners(other))));
+        if !near.contains(&triangle) {
+            return Self { is_double: known.contains(&places(own)), ..Self::default() };
+        }
+        let (mut forward, mut backward, mut twins) = ([0; 3], [0; 3], [None; 3]);
+        for other in near {
+            let theirs = corners(other);
+            for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
+                let [a, b] = [own[i], own[(i + 1) % 3]];
+                let [c, d] = [theirs[j], theirs[(j + 1) % 3]];
+                if a == d && b == c {
+                    backward[i] += 1;
+                    twins[i] = Some(3 * other + j as u32);
+                } else if a == c && b == d {
+                    forward[i] += 1;
+                }
+            }
+        }
+        let twins =
+            std::array::from_fn(|i| twins[i].filter(|_| forward[i] == 1 && backward[i] == 1));
+        Self { twins, ..Self::default() }
+    }
+}
+
+/// Returns the places of three corners in an order of their own.
+fn places(corners: [Vector; 3]) -> [[u32; 3]; 3] {
+    // Minus zero is zero.
+    let mut places = corners.map(|corner| (corner + Vector::ZERO).to_array().map(f32::to_bits));
+    places.sort_unstable();
+    places
 }
 
 /// Neighbours of the triangles that a pair has touched, for a mesh that is too large to analyse as a whole.
@@ -265,10 +323,7 @@ impl Neighbours {
     /// Calls `then` with the neighbours of a triangle, which the BVH finds in about 1 µs.
     fn with<T>(&self, mesh: &TriMesh, triangle: u32, then: impl FnOnce(&Neighbour) -> T) -> T {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        then(known.entry(triangle).or_insert_with(|| Neighbour {
-            twins: twins_of(mesh, triangle),
-            flags: TriangleFlags::default(),
-        }))
+        then(known.entry(triangle).or_insert_with(|| Neighbour::new(mesh, triangle)))
     }
 }
 
@@ -290,29 +345,6 @@ pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, direction:
     !Around { facets, side: Side::Sheet }.rises(triangle, place, direction, IMPACT_RISE)
 }
 
-/// Returns the twins of the edges of a triangle. Vertices at one place are one vertex, as in
-/// [`Surface`](sbbk_core::surface::Surface).
-fn twins_of(mesh: &TriMesh, triangle: u32) -> [Option<u32>; 3] {
-    let triangle = mesh.triangle(triangle);
-    let own = [triangle.a, triangle.b, triangle.c];
-    let (mut forward, mut backward, mut twins) = ([0; 3], [0; 3], [None; 3]);
-    for other in mesh.bvh().intersect_aabb(&triangle.local_aabb()) {
-        let neighbour = mesh.triangle(other);
-        let theirs = [neighbour.a, neighbour.b, neighbour.c];
-        for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
-            let [a, b] = [own[i], own[(i + 1) % 3]];
-            let [c, d] = [theirs[j], theirs[(j + 1) % 3]];
-            if a == d && b == c {
-                backward[i] += 1;
-                twins[i] = Some(3 * other + j as u32);
-            } else if a == c && b == d {
-                forward[i] += 1;
-            }
-        }
-    }
-    std::array::from_fn(|i| twins[i].filter(|_| forward[i] == 1 && backward[i] == 1))
-}
-
 /// Returns the box between two corners in f32, grown by the rounding.
 pub(crate) fn box_between(corners: [DVec3; 2]) -> Aabb {
     let [low, high] = corners.map(|corner| corner.as_vec3());
@@ -324,7 +356,6 @@ mod tests {
     use std::ops::Range;
 
     use oorandom::Rand32;
-    use parry3d::math::Vector;
     use parry3d::shape::Cuboid;
     use sbbk_core::surface::Surface;
 
@@ -333,8 +364,8 @@ mod tests {
     /// The triangles of these soups are often points, segments, duplicates, or share an edge with two
     /// others.
     #[test]
-    fn local_twins_are_those_of_the_surface() {
-        let (mut random, mut found) = (Rand32::new(1), 0);
+    fn local_twins_and_doubles_are_those_of_the_surface() {
+        let (mut random, mut found, mut doubles) = (Rand32::new(1), 0, 0);
         for round in 0..400 {
             let mut place = || Vector::from_array([(); 3].map(|()| random.rand_range(0..3) as f32));
             let vertices: Vec<Vector> = (0..12).map(|_| place()).collect();
@@ -344,14 +375,23 @@ mod tests {
             let whole = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
             let known = Neighbours::default();
             let (twins, memo) = (Twins::Near(&known), &PlaceMemo::default());
+            let facets = MeshFacets { mesh: &mesh, twins, memo };
             for half_edge in 0..3 * mesh.indices().len() as u32 {
                 let twin = whole.twin(half_edge);
-                let facets = MeshFacets { mesh: &mesh, twins, memo };
                 assert_eq!(facets.twin(half_edge), twin, "{half_edge} of {:?}", mesh.indices());
                 found += u32::from(twin.is_some());
             }
+            let places = mesh.triangles().map(|triangle| places(*triangle.vertices()));
+            let places: Vec<_> = places.collect();
+            for (i, corners) in places.iter().enumerate() {
+                let is_double = places[..i].contains(corners);
+                let triangle = i as u32;
+                let told = [whole.is_double(triangle), facets.is_double(triangle)];
+                assert_eq!(told, [is_double; 2], "{triangle} of {:?}", mesh.indices());
+                doubles += u32::from(is_double);
+            }
         }
-        assert!(found > 1000, "{found} twins");
+        assert!(found > 1000 && doubles > 100, "{found} twins, {doubles} doubles");
     }
 
     /// Boxes are alone, touch, cross, or are within others. Would catch parts that share a wrong side.

@@ -2,7 +2,7 @@ use std::sync::{Arc, OnceLock};
 
 use glamx::Vec3;
 use parry3d::math::Real;
-use sbbk_core::surface::{Around, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::surface::{Around, PlaceMemo, Side, Surface, SurfaceKind};
 use sbbk_core::tree::Tree;
 
 use super::data::{MeshData, Tips};
@@ -173,11 +173,12 @@ impl<'a> LazySurface<'a> {
         (facets, data.kind_of(mesh), data.declared_kind().is_some())
     }
 
-    /// Returns the surface around a triangle.
+    /// Returns the surface around a triangle. A double counts as a wall within, so it has no contacts.
     #[inline]
     pub(crate) fn around(&self, triangle: u32) -> Around<MeshFacets<'_>> {
         let (facets, kind, is_declared) = self.facets();
         let side = match kind {
+            _ if facets.is_double(triangle) => Side::Inner,
             SurfaceKind::Sheet => Side::Sheet,
             SurfaceKind::Solid if is_declared => match facets.side(triangle) {
                 Side::Inner => Side::Inner,
@@ -205,6 +206,11 @@ impl<'a> LazySurface<'a> {
     pub(crate) fn tips(&self) -> impl Iterator<Item = (u32, Vec3)> {
         let tips: &Tips = self.data().tips.get_or_init(|| self.view.tips());
         tips.iter().map(|&tip| (tip, self.view.corner(tip)))
+    }
+
+    /// Returns the adjacency of the mesh if it is known by now and has doubles.
+    pub(crate) fn with_doubles(&self) -> Option<&Surface> {
+        self.data.get()?.surface().filter(|surface| surface.has_doubles())
     }
 
     /// Returns the kind of the mesh.

@@ -6,7 +6,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{PointQuery, Ray};
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::surface::{Around, Side, SurfaceKind};
+use sbbk_core::surface::{Around, Side, Surface, SurfaceKind};
 use sbbk_core::traverse::{
     DescentCounts, NodePair, PairFrame, Placement, begin_descent, descend_from,
 };
@@ -240,6 +240,7 @@ impl Meshes<'_> {
         let mut frame = PairFrame::new(trees, pose.placement12, margin);
         let culling = lateral_culling(self, pose, margin);
         let test = LeafTest::new(&frame).with_culling(culling);
+        let doubles = self.doubles();
         let count = if has_threads() { STARTS } else { 1 };
         begin_descent(trees, &mut frame, count, start, &mut descent.counts);
         let least = if start.len() < STARTS { STARTS } else { LEAST_STARTS };
@@ -249,7 +250,9 @@ impl Meshes<'_> {
             descend_from(start, trees, frame, stack, counts, |batch1, batch2| {
                 test.survivors(batch1, batch2, |lane1, lane2| {
                     let pair = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
-                    found.push(Candidate::new(pair));
+                    if !has_double(&doubles, pair) {
+                        found.push(Candidate::new(pair));
+                    }
                 });
             });
         });
@@ -260,15 +263,31 @@ impl Meshes<'_> {
         let culling = lateral_culling(self, pose, margin);
         let search = BvhDescent::new(meshes.each_ref(), pose.placement12, margin, culling);
         search.list_near(near, &mut descent.counts);
+        let doubles = self.doubles();
+        let larger = doubles[self.pair.larger()];
+        near.retain(|&triangle| !larger.is_some_and(|surface| surface.is_double(triangle)));
         in_chunks(near, LEAST_NEAR, descent, &|near: &mut [u32], chunk: &mut DescentChunk| {
             let DescentChunk { found, counts, .. } = chunk;
             let _ = search.pairs(near, counts, |pair| {
-                found.push(Candidate::new(pair));
+                if !has_double(&doubles, pair) {
+                    found.push(Candidate::new(pair));
+                }
                 ControlFlow::Continue(())
             });
         });
         self.store.count_walk();
     }
+
+    /// Returns the surfaces that are known by now and have doubles. A descent may leave these out, as they have no contacts.
+    fn doubles(&self) -> [Option<&Surface>; 2] {
+        self.surfaces.each_ref().map(|surface| surface.as_ref()?.with_doubles())
+    }
+}
+
+/// Returns true if one of two triangles is a double.
+#[inline]
+fn has_double(of: &[Option<&Surface>; 2], pair: [u32; 2]) -> bool {
+    (0..2).any(|i| of[i].is_some_and(|surface| surface.is_double(pair[i])))
 }
 
 impl TriangleShapes for Meshes<'_> {

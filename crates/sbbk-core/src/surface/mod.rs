@@ -16,12 +16,11 @@ pub use one_ring::{Around, Facets};
 pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
 
-use std::ops::ControlFlow;
-
-use glamx::{DVec3, Vec3};
+use glamx::Vec3;
 use rustc_hash::FxHashMap;
 
 use crate::collections::CompactIndices;
+use twins::TriangleSet;
 
 /// Greatest number of triangles of a mesh whose kind follows from its edges if these are all paired. Rays also take its closed
 /// components as they are. Larger meshes take rays that need no paired edges.
@@ -40,7 +39,8 @@ pub struct Surface {
     hubs: FxHashMap<twins::Place, (u32, u32)>,
     has_small_components: bool,
     /// `None` for a mesh of more than [`PAIRED`] triangles: it has the sides of a mesh whose adjacency is not known.
-    open: Option<twins::OpenParts>,
+    open: Option<TriangleSet>,
+    doubles: TriangleSet,
     kind: SurfaceKind,
 }
 
@@ -52,17 +52,29 @@ impl Surface {
     /// # Panics
     /// If a triangle has an index beyond the vertices.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
-        let twins::Adjacency { twins, is_closed, hubs, has_small_components, open } =
+        let twins::Adjacency { twins, is_closed, hubs, has_small_components, open, doubles } =
             twins::find(vertices, triangles);
         let is_closed = is_closed && triangles.len() <= PAIRED;
-        let parts = Parts { triangles: rays, open: open.as_ref() };
-        let kind = sides::of_samples(&parts, is_closed);
-        Self { twins, hubs, has_small_components, open, kind }
+        let memo = &PlaceMemo::default();
+        let mesh = sides::RayMesh { triangles: rays, open: open.as_ref(), memo };
+        let kind = sides::of_samples(&mesh, is_closed);
+        Self { twins, hubs, has_small_components, open, doubles, kind }
     }
 
     /// Finds the side of a triangle as [`side`](side()) does. Takes less time, as rays count closed components as they are.
     pub fn side(&self, triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-        side(&Parts { triangles, open: self.open.as_ref() }, triangle, memo)
+        sides::RayMesh { triangles, open: self.open.as_ref(), memo }.side(triangle)
+    }
+
+    /// True if an earlier triangle has the same corners, in either winding. Its contacts are those of the earlier one.
+    #[inline]
+    pub fn is_double(&self, triangle: u32) -> bool {
+        self.doubles.contains(triangle)
+    }
+
+    /// True if there is a [double](Self::is_double).
+    pub fn has_doubles(&self) -> bool {
+        !self.doubles.is_empty()
     }
 
     /// The half-edge that runs back in the neighbour, if there is exactly one.
@@ -96,39 +108,8 @@ impl Surface {
         let hubs = size_of::<(twins::Place, (u32, u32))>() * self.hubs.capacity();
         size_of::<Self>()
             + self.twins.bytes()
-            + self.open.as_ref().map_or(0, twins::OpenParts::bytes)
+            + self.open.as_ref().map_or(0, TriangleSet::bytes)
+            + self.doubles.bytes()
             + hubs
-    }
-}
-
-/// The triangles of a mesh for rays, some of open components.
-struct Parts<'a, T> {
-    triangles: &'a T,
-    open: Option<&'a twins::OpenParts>,
-}
-
-impl<T: RayTriangles> RayTriangles for Parts<'_, T> {
-    fn count(&self) -> u32 {
-        self.triangles.count()
-    }
-
-    fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles.corners(triangle)
-    }
-
-    fn bounds(&self) -> [DVec3; 2] {
-        self.triangles.bounds()
-    }
-
-    fn is_of_closed(&self, triangle: u32) -> bool {
-        self.open.is_some_and(|open| !open.contain(triangle))
-    }
-
-    fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        self.triangles.near(triangle, slack, visit);
-    }
-
-    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        self.triangles.along(start, direction, visit);
     }
 }

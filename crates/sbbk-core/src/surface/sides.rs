@@ -16,6 +16,7 @@ use glamx::DVec3;
 use super::meeting::{depth_within, meeting};
 use super::slopes::PlaceMemo;
 use super::triangle::{area_vector, longest_side};
+use super::twins::TriangleSet;
 
 /// Triangles that rays can meet.
 pub trait RayTriangles {
@@ -27,12 +28,6 @@ pub trait RayTriangles {
 
     /// The least and the greatest coordinates.
     fn bounds(&self) -> [DVec3; 2];
-
-    /// True if the component of a triangle is known to be closed. Rays then count the triangle without a test whether it
-    /// is a wall within.
-    fn is_of_closed(&self, _triangle: u32) -> bool {
-        false
-    }
 
     /// Calls `visit` with all triangles that may come within `slack` of a triangle, until it breaks.
     fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
@@ -134,64 +129,112 @@ const TIE: f64 = 1.0e-9;
 
 /// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more.
 pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-    let first = sample(triangles, triangle, 0, memo);
-    if first == Side::Outer {
-        return first;
-    }
-    let second = sample(triangles, triangle, 1, memo);
-    let is_doubted = second != first && second == sample(triangles, triangle, 2, memo);
-    let side = if is_doubted { second } else { first };
-    // Two rays must agree, as many pass where boxes are flush.
-    let is_inner_at = |start| {
-        let mut rays = (0..2).filter_map(|i| Rays::new(triangles, triangle, start, i, STEEP));
-        rays.any(|rays| side_of_rays(&rays, memo) == Side::Inner)
-    };
-    let is_face = side == Side::Inner && is_partly_outside(triangles, triangle, is_inner_at);
-    if is_face { Side::Outer } else { side }
+    RayMesh { triangles, open: None, memo }.side(triangle)
 }
 
-/// Returns true if part of a triangle may be outside of the body, though its middle is within. `is_inner_at` tells whether a
-/// point is within.
-///
-/// Tests points near the corners, and on both sides of each triangle that meets this one. The border of the outer part runs
-/// along such triangles.
-fn is_partly_outside(
-    triangles: &impl RayTriangles,
-    triangle: u32,
-    is_inner_at: impl Fn(DVec3) -> bool,
-) -> bool {
-    let corners = triangles.corners(triangle);
-    let Some(normal) = area_vector(&corners).try_normalize() else { return false };
-    let size = longest_side(&corners);
-    // Rays skip triangles within this distance.
-    let slack = OFFSET * size;
-    if corners.iter().any(|corner| !is_inner_at(corner.lerp(middle(&corners), AT_CORNER))) {
-        return true;
-    }
-    // Rays that start near the border may skip a face that is flush with it.
-    let least = 0.5 * BESIDE * size;
-    let is_outside =
-        |point: DVec3| depth_within(&corners, normal, point) > least && !is_inner_at(point);
-    let mut tested = 0;
-    let mut meets_outside = |other: u32| {
-        let other = triangles.corners(other);
-        let Some(([start, end], across)) = meeting(&corners, &other, slack) else {
-            return false;
+/// A mesh, and what is known about the sides of its triangles.
+pub(super) struct RayMesh<'a, T> {
+    pub(super) triangles: &'a T,
+    /// Triangles of open components. `None`: no component is known to be closed.
+    pub(super) open: Option<&'a TriangleSet>,
+    /// Walls that rays have met.
+    pub(super) memo: &'a PlaceMemo,
+}
+
+impl<T: RayTriangles> RayMesh<'_, T> {
+    /// Finds the side of a triangle.
+    pub(super) fn side(&self, triangle: u32) -> Side {
+        let first = self.sample(triangle, 0);
+        if first == Side::Outer {
+            return first;
+        }
+        let second = self.sample(triangle, 1);
+        let is_doubted = second != first && second == self.sample(triangle, 2);
+        let side = if is_doubted { second } else { first };
+        // Two rays must agree, as many pass where boxes are flush.
+        let is_inner_at = |start| {
+            let mut rays = (0..2).filter_map(|i| Rays::new(self, triangle, start, i, STEEP));
+            rays.any(|rays| rays.side_without_walls() == Side::Inner)
         };
-        tested += 1;
-        let beside = BESIDE * size * across;
-        tested > MOST_MEETINGS
-            || ALONG.into_iter().any(|at| {
-                let point = start.lerp(end, at);
-                is_outside(point + beside) || is_outside(point - beside)
-            })
-    };
-    let mut is_partly_outside = false;
-    triangles.near(triangle, slack, &mut |other| {
-        is_partly_outside = other != triangle && meets_outside(other);
-        if is_partly_outside { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    is_partly_outside
+        let is_face = side == Side::Inner && self.is_partly_outside(triangle, is_inner_at);
+        if is_face { Side::Outer } else { side }
+    }
+
+    /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
+    fn sample(&self, triangle: u32, i: u32) -> Side {
+        let start = middle(&self.triangles.corners(triangle));
+        let rays = Rays::new(self, triangle, start, i, STEEP);
+        rays.map_or(Side::Sheet, |rays| rays.side_without_walls())
+    }
+
+    /// Like [`sample`](Self::sample), with rays of any slope. A place within the body is no hole, so the rays need not leave
+    /// out walls there.
+    fn sample_of_mesh(&self, triangle: u32, i: u32) -> Side {
+        let start = middle(&self.triangles.corners(triangle));
+        let Some(rays) = Rays::new(self, triangle, start, i, ANY) else { return Side::Sheet };
+        match rays.side(|_| true) {
+            Side::Inner => Side::Inner,
+            _ => rays.side_without_walls(),
+        }
+    }
+
+    /// Returns true if rays count a triangle: it is of a closed component, or no wall within the body.
+    fn counts(&self, triangle: u32) -> bool {
+        let is_wall = || {
+            let is_inner_at = |start| {
+                let rays = Rays::new(self, triangle, start, 0, STEEP);
+                rays.is_some_and(|rays| rays.is_inner(|_| true))
+            };
+            is_inner_at(middle(&self.triangles.corners(triangle)))
+                && !self.is_partly_outside(triangle, is_inner_at)
+        };
+        self.is_of_closed(triangle) || !self.memo.is_wall(triangle, is_wall)
+    }
+
+    /// True if the component of a triangle is known to be closed.
+    fn is_of_closed(&self, triangle: u32) -> bool {
+        self.open.is_some_and(|open| !open.contains(triangle))
+    }
+
+    /// Returns true if part of a triangle may be outside of the body, though its middle is within. `is_inner_at` tells
+    /// whether a point is within.
+    ///
+    /// Tests points near the corners, and on both sides of each triangle that meets this one. The border of the outer part
+    /// runs along such triangles.
+    fn is_partly_outside(&self, triangle: u32, is_inner_at: impl Fn(DVec3) -> bool) -> bool {
+        let corners = self.triangles.corners(triangle);
+        let Some(normal) = area_vector(&corners).try_normalize() else { return false };
+        let size = longest_side(&corners);
+        // Rays skip triangles within this distance.
+        let slack = OFFSET * size;
+        if corners.iter().any(|corner| !is_inner_at(corner.lerp(middle(&corners), AT_CORNER))) {
+            return true;
+        }
+        // Rays that start near the border may skip a face that is flush with it.
+        let least = 0.5 * BESIDE * size;
+        let is_outside =
+            |point: DVec3| depth_within(&corners, normal, point) > least && !is_inner_at(point);
+        let mut tested = 0;
+        let mut meets_outside = |other: u32| {
+            let other = self.triangles.corners(other);
+            let Some(([start, end], across)) = meeting(&corners, &other, slack) else {
+                return false;
+            };
+            tested += 1;
+            let beside = BESIDE * size * across;
+            tested > MOST_MEETINGS
+                || ALONG.into_iter().any(|at| {
+                    let point = start.lerp(end, at);
+                    is_outside(point + beside) || is_outside(point - beside)
+                })
+        };
+        let mut is_partly_outside = false;
+        self.triangles.near(triangle, slack, &mut |other| {
+            is_partly_outside = other != triangle && meets_outside(other);
+            if is_partly_outside { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        is_partly_outside
+    }
 }
 
 /// Triangles that are considered for samples, evenly spread over the mesh. Higher: a large mesh takes
@@ -200,11 +243,13 @@ const CONSIDERED: u32 = 1 << 14;
 
 /// Classifies a mesh by up to 4096 rays.
 pub fn kind(triangles: &impl RayTriangles) -> SurfaceKind {
-    of_samples(triangles, false)
+    let memo = &PlaceMemo::default();
+    of_samples(&RayMesh { triangles, open: None, memo }, false)
 }
 
 /// Classifies a mesh. `is_closed`: each edge has as many half-edges one way as back, so there are no holes.
-pub(super) fn of_samples(triangles: &impl RayTriangles, is_closed: bool) -> SurfaceKind {
+pub(super) fn of_samples(mesh: &RayMesh<impl RayTriangles>, is_closed: bool) -> SurfaceKind {
+    let triangles = mesh.triangles;
     let step = triangles.count().div_ceil(CONSIDERED).max(1);
     let areas = (0..triangles.count() / step).scan(0.0, |sum, i| {
         let area = area_vector(&triangles.corners(step * i)).length();
@@ -216,14 +261,13 @@ pub(super) fn of_samples(triangles: &impl RayTriangles, is_closed: bool) -> Surf
     if whole <= 0.0 {
         return SurfaceKind::Sheet;
     }
-    let memo = PlaceMemo::default();
     let mut counts = [0; 4];
     let mut tested = 0;
     for samples in if is_closed { [VOTES; 3] } else { SAMPLES } {
         for i in tested..samples {
             let place = whole * sequence(f64::from(i), 0);
             let triangle = step * areas.partition_point(|&sum| sum < place) as u32;
-            counts[sample_of_mesh(triangles, triangle, i, &memo) as usize] += 1;
+            counts[mesh.sample_of_mesh(triangle, i) as usize] += 1;
         }
         tested = samples;
         let open = f64::from(counts[Side::Sheet as usize]) / f64::from(samples);
@@ -250,47 +294,8 @@ fn sequence(i: f64, dimension: usize) -> f64 {
     (0.5 + i * STEPS[dimension]).fract()
 }
 
-/// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
-fn sample(triangles: &impl RayTriangles, triangle: u32, i: u32, memo: &PlaceMemo) -> Side {
-    let start = middle(&triangles.corners(triangle));
-    let rays = Rays::new(triangles, triangle, start, i, STEEP);
-    rays.map_or(Side::Sheet, |rays| side_of_rays(&rays, memo))
-}
-
-/// Like [`sample`], with rays of any slope. A place within the body is no hole, so the rays need not leave out walls there.
-fn sample_of_mesh(triangles: &impl RayTriangles, triangle: u32, i: u32, memo: &PlaceMemo) -> Side {
-    let start = middle(&triangles.corners(triangle));
-    let Some(rays) = Rays::new(triangles, triangle, start, i, ANY) else { return Side::Sheet };
-    match rays.side(|_| true) {
-        Side::Inner => Side::Inner,
-        _ => side_of_rays(&rays, memo),
-    }
-}
-
 fn middle([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*a + *b + *c) / 3.0
-}
-
-/// Returns what rays find. Walls within the body count as nothing, unless the rays find a face with them.
-fn side_of_rays<T: RayTriangles>(rays: &Rays<'_, T>, memo: &PlaceMemo) -> Side {
-    let found = rays.side(|_| true);
-    if found == Side::Outer {
-        return found;
-    }
-    rays.side(|other| counts(rays.triangles, other, memo))
-}
-
-/// Returns true if rays count a triangle: it is of a closed component, or no wall within the body.
-fn counts(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> bool {
-    let is_wall = || {
-        let is_inner_at = |start| {
-            let rays = Rays::new(triangles, triangle, start, 0, STEEP);
-            rays.is_some_and(|rays| rays.is_inner(|_| true))
-        };
-        is_inner_at(middle(&triangles.corners(triangle)))
-            && !is_partly_outside(triangles, triangle, is_inner_at)
-    };
-    triangles.is_of_closed(triangle) || !memo.is_wall(triangle, is_wall)
 }
 
 /// A triangle that a ray meets.
@@ -305,7 +310,7 @@ struct Hit {
 
 /// A ray to the front of a triangle and one to the back.
 struct Rays<'a, T> {
-    triangles: &'a T,
+    mesh: &'a RayMesh<'a, T>,
     start: DVec3,
     to_front: DVec3,
     /// Length at which they begin.
@@ -317,13 +322,13 @@ struct Rays<'a, T> {
 impl<'a, T: RayTriangles> Rays<'a, T> {
     /// Rays number `i` from a point of a triangle; `None` for one without an area.
     fn new(
-        triangles: &'a T,
+        mesh: &'a RayMesh<'a, T>,
         triangle: u32,
         start: DVec3,
         i: u32,
         Choice { steep, of }: Choice,
     ) -> Option<Self> {
-        let corners = triangles.corners(triangle);
+        let corners = mesh.triangles.corners(triangle);
         let up = area_vector(&corners).try_normalize()?;
         let (across, along) = up.any_orthonormal_pair();
         let ways = (of * i..of * (i + 1)).map(|i| {
@@ -334,14 +339,20 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
             let flat = (1.0 - height * height).max(0.0).sqrt();
             height * up + flat * (cos * across + sin * along)
         });
-        let [low, high] = triangles.bounds().map(|corner| corner - start);
+        let [low, high] = mesh.triangles.bounds().map(|corner| corner - start);
         let length = |way: DVec3| {
             let [one, other] = [low, high].map(|corner| corner / way);
             one.max(other).min_element() - one.min(other).max_element()
         };
         let to_front = ways.min_by(|&a, &b| length(a).total_cmp(&length(b)))?;
         let skipped = OFFSET * longest_side(&corners) / up.dot(to_front);
-        Some(Self { triangles, start, to_front, skipped, hits: Default::default() })
+        Some(Self { mesh, start, to_front, skipped, hits: Default::default() })
+    }
+
+    /// What the rays find. Walls within the body count as nothing, unless the rays find a face with them.
+    fn side_without_walls(&self) -> Side {
+        let found = self.side(|_| true);
+        if found == Side::Outer { found } else { self.side(|other| self.mesh.counts(other)) }
     }
 
     /// What the rays find if only triangles count for which `counts` is true.
@@ -370,14 +381,14 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
 
     fn hits(&self, direction: DVec3) -> Option<Vec<Hit>> {
         let mut hits = Vec::new();
-        self.triangles.along(self.start, direction, &mut |triangle| {
-            let corners = self.triangles.corners(triangle).map(|corner| corner - self.start);
+        self.mesh.triangles.along(self.start, direction, &mut |triangle| {
+            let corners = self.mesh.triangles.corners(triangle).map(|corner| corner - self.start);
             let hit = hit(&corners, direction).filter(|(length, ..)| *length > self.skipped);
             hits.extend(hit.map(|(length, sign, is_at_border)| Hit {
                 length,
                 sign,
                 triangle,
-                is_exact: !is_at_border && self.triangles.is_of_closed(triangle),
+                is_exact: !is_at_border && self.mesh.is_of_closed(triangle),
             }));
             if hits.len() > MOST_HITS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });

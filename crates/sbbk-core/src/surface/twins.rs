@@ -3,7 +3,7 @@
 use std::hash::BuildHasher;
 
 use glamx::Vec3;
-use rustc_hash::{FxBuildHasher, FxHashMap};
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 use super::{PAIRED, SMALL_COMPONENT};
 use crate::collections::CompactIndices;
@@ -16,7 +16,7 @@ const CROWD: u32 = 1024;
 
 /// Adjacency of a mesh.
 pub(super) struct Adjacency {
-    /// The twin of each half-edge, if there is exactly one.
+    /// The twin of each half-edge, if there is exactly one besides doubles. Doubles have none.
     pub(super) twins: CompactIndices,
     /// True if each edge has as many half-edges one way as back.
     pub(super) is_closed: bool,
@@ -24,32 +24,29 @@ pub(super) struct Adjacency {
     pub(super) hubs: FxHashMap<Place, (u32, u32)>,
     /// True if closed components have few triangles on average.
     pub(super) has_small_components: bool,
-    /// `None` for a mesh of more than [`PAIRED`] triangles.
-    pub(super) open: Option<OpenParts>,
+    /// The triangles of components with an edge that has no twin. `None` for a mesh of more than [`PAIRED`] triangles.
+    pub(super) open: Option<TriangleSet>,
+    /// Triangles with the corners of an earlier one, in either winding.
+    pub(super) doubles: TriangleSet,
 }
 
-/// The triangles of components with an edge that has no twin, as bits. A closed mesh has an empty list.
+/// A set of triangles. Takes no memory if it is empty.
 #[derive(Clone, Debug, Default)]
-pub(super) struct OpenParts(Box<[u64]>);
+pub(super) struct TriangleSet(Box<[u64]>);
 
-impl OpenParts {
-    fn new(twins: &[Option<u32>]) -> Self {
-        let mut bits =
-            vec![0; if twins.contains(&None) { twins.len().div_ceil(3 * 64) } else { 0 }];
-        let is_border = |half_edge: &usize| twins[*half_edge].is_none();
-        let mut reached: Vec<usize> = (0..twins.len()).filter(is_border).map(|at| at / 3).collect();
-        while let Some(triangle) = reached.pop() {
-            let (word, bit) = (&mut bits[triangle / 64], 1 << (triangle % 64));
-            if *word & bit == 0 {
-                *word |= bit;
-                let twins = twins[3 * triangle..][..3].iter().flatten();
-                reached.extend(twins.map(|&twin| twin as usize / 3));
-            }
-        }
-        Self(bits.into())
+impl TriangleSet {
+    /// A set of what `insert` adds to a list of bits for `count` triangles.
+    fn new(count: usize, insert: impl FnOnce(&mut [u64])) -> Self {
+        let mut bits = vec![0; count.div_ceil(64)];
+        insert(&mut bits);
+        Self(if bits.iter().all(|&word| word == 0) { Box::default() } else { bits.into() })
     }
 
-    pub(super) fn contain(&self, triangle: u32) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub(super) fn contains(&self, triangle: u32) -> bool {
         let word = self.0.get(triangle as usize / 64);
         word.is_some_and(|word| word >> (triangle % 64) & 1 == 1)
     }
@@ -58,6 +55,49 @@ impl OpenParts {
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&*self.0)
     }
+}
+
+/// Adds a triangle. Returns false if it was there.
+fn insert(bits: &mut [u64], triangle: usize) -> bool {
+    let (word, bit) = (&mut bits[triangle / 64], 1 << (triangle % 64));
+    let is_new = *word & bit == 0;
+    *word |= bit;
+    is_new
+}
+
+/// Returns the triangles of components with an edge that has no twin.
+fn open_parts(twins: &[Option<u32>]) -> TriangleSet {
+    TriangleSet::new(twins.len() / 3, |bits| {
+        let is_border = |half_edge: &usize| twins[*half_edge].is_none();
+        let mut reached: Vec<usize> = (0..twins.len()).filter(is_border).map(|at| at / 3).collect();
+        while let Some(triangle) = reached.pop() {
+            if insert(bits, triangle) {
+                let twins = twins[3 * triangle..][..3].iter().flatten();
+                reached.extend(twins.map(|&twin| twin as usize / 3));
+            }
+        }
+    })
+}
+
+/// Returns the triangles that have the corners of an earlier one.
+///
+/// All twins of such a triangle are in one triangle, as other edges have several half-edges one way.
+fn doubles(welded: &[u32], triangles: &[[u32; 3]], twins: &[Option<u32>]) -> TriangleSet {
+    let may_be_double = |triangle: usize| {
+        let mut neighbours = twins[3 * triangle..][..3].iter().flatten().map(|twin| twin / 3);
+        let first = neighbours.next();
+        neighbours.all(|other| Some(other) == first)
+    };
+    let mut known = FxHashSet::default();
+    TriangleSet::new(triangles.len(), |bits| {
+        for triangle in (0..triangles.len()).filter(|&triangle| may_be_double(triangle)) {
+            let mut corners = triangles[triangle].map(|corner| welded[corner as usize]);
+            corners.sort_unstable();
+            if !known.insert(corners) {
+                insert(bits, triangle);
+            }
+        }
+    })
 }
 
 /// A place where vertices are one.
@@ -71,25 +111,33 @@ pub(super) fn place(vertex: Vec3) -> Place {
 pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
     let welded = weld(vertices);
     let valence = valence(&welded, triangles);
-    let (edges, _) = edges(&welded, &valence, triangles);
+    let numbered = (0..).zip(triangles.iter().copied());
+    let (all, _) = edges(&welded, &valence, numbered.clone());
     // A closed component without handles has two more vertices and triangles than edges.
     let vertex_count = valence.iter().filter(|&&count| count > 0).count();
-    let parts = (vertex_count + triangles.len()).saturating_sub(edges.len()) / 2;
+    let parts = (vertex_count + triangles.len()).saturating_sub(all.len()) / 2;
     let has_small_components = parts > 1 && parts * SMALL_COMPONENT >= triangles.len();
-    let mut twins = vec![None; 3 * triangles.len()];
-    let mut is_closed = true;
-    for Edge { last: [up, down], counts, .. } in edges {
-        if counts == [1, 1] {
-            twins[up as usize] = Some(down);
-            twins[down as usize] = Some(up);
-        } else {
-            is_closed &= counts[0] == counts[1];
-        }
-    }
+    let is_closed = all.iter().all(|edge| edge.counts[0] == edge.counts[1]);
+    let mut twins = paired(&all, triangles.len());
     let hubs = hubs(vertices, &welded, &valence, triangles);
-    let open = (triangles.len() <= PAIRED).then(|| OpenParts::new(&twins));
+    let open = (triangles.len() <= PAIRED).then(|| open_parts(&twins));
+    let doubles = doubles(&welded, triangles, &twins);
+    if !doubles.is_empty() {
+        let single = numbered.filter(|&(triangle, _)| !doubles.contains(triangle));
+        twins = paired(&edges(&welded, &valence, single).0, triangles.len());
+    }
     let twins = CompactIndices::new(twins.into_iter());
-    Adjacency { twins, is_closed, hubs, has_small_components, open }
+    Adjacency { twins, is_closed, hubs, has_small_components, open, doubles }
+}
+
+/// Returns the twin of each half-edge of `count` triangles.
+fn paired(edges: &[Edge], count: usize) -> Vec<Option<u32>> {
+    let mut twins = vec![None; 3 * count];
+    for &Edge { last: [up, down], .. } in edges.iter().filter(|edge| edge.counts == [1, 1]) {
+        twins[up as usize] = Some(down);
+        twins[down as usize] = Some(up);
+    }
+    twins
 }
 
 /// Number of triangles at each vertex.
@@ -136,12 +184,16 @@ struct Edge {
 ///
 /// Each edge is listed at that end which fewer triangles share. The lists of planar graphs then take
 /// a constant number of steps an edge, whatever the valence of single vertices.
-fn edges(welded: &[u32], valence: &[u32], triangles: &[[u32; 3]]) -> (Vec<Edge>, usize) {
+fn edges(
+    welded: &[u32],
+    valence: &[u32],
+    triangles: impl Iterator<Item = (u32, [u32; 3])>,
+) -> (Vec<Edge>, usize) {
     let mut first = vec![NONE; welded.len()];
     // A closed mesh has one and a half edges a triangle.
-    let mut edges = Vec::<Edge>::with_capacity(triangles.len() * 3 / 2 + 16);
+    let mut edges = Vec::<Edge>::with_capacity(triangles.size_hint().0 * 3 / 2 + 16);
     let mut steps = 0;
-    for (triangle, corners) in (0..).zip(triangles) {
+    for (triangle, corners) in triangles {
         let [a, b, c] = corners.map(|corner| welded[corner as usize]);
         for (i, [start, end]) in (0..).zip([[a, b], [b, c], [c, a]]) {
             let way = usize::from(start > end);
@@ -199,7 +251,7 @@ mod tests {
         let rim = |i: u32| i + u32::from(hub_is_first);
         let triangles: Vec<_> = (0..count).map(|i| [hub, rim(i), rim(i + 1)]).collect();
         let welded: Vec<u32> = (0..count + 2).collect();
-        edges(&welded, &valence(&welded, &triangles), &triangles).1
+        edges(&welded, &valence(&welded, &triangles), (0..).zip(triangles)).1
     }
 
     /// Would catch vertices that are joined though they differ, or that are not joined to the first one.

@@ -21,19 +21,34 @@ fn before(half_edge: usize) -> usize {
     3 * (half_edge / 3) + (half_edge + 2) % 3
 }
 
+/// True if an earlier triangle has the same corners.
+fn is_double(mesh: &Soup, triangle: usize) -> bool {
+    let sorted = |triangle: usize| {
+        // Minus zero is at the same place.
+        let mut places =
+            corners(mesh, 3 * triangle).map(|at| (at + 0.0).to_array().map(f32::to_bits));
+        places.sort_unstable();
+        places
+    };
+    (0..triangle).any(|other| sorted(other) == sorted(triangle))
+}
+
 /// The twin of each half-edge by definition: the only half-edge from its end to its start, if no
-/// other runs from start to end.
+/// other runs from start to end. Doubles do not count.
 fn brute_twins(mesh: &Soup) -> Vec<Option<u32>> {
     let count = 3 * mesh.triangles.len();
+    let doubles: Vec<bool> = (0..count / 3).map(|triangle| is_double(mesh, triangle)).collect();
     let along = |from: Vec3, to: Vec3| -> Vec<u32> {
-        let is_along = |&half_edge: &u32| corners(mesh, half_edge as usize)[..2] == [from, to];
+        let is_along = |&half_edge: &u32| {
+            !doubles[half_edge as usize / 3] && corners(mesh, half_edge as usize)[..2] == [from, to]
+        };
         (0..count as u32).filter(is_along).collect()
     };
     (0..count)
         .map(|half_edge| {
             let [start, end, _] = corners(mesh, half_edge);
             match (&along(start, end)[..], &along(end, start)[..]) {
-                ([_], &[twin]) if start != end => Some(twin),
+                ([_], &[twin]) if start != end && !doubles[half_edge / 3] => Some(twin),
                 _ => None,
             }
         })
@@ -47,6 +62,11 @@ fn check_twins(mesh: &Soup) -> usize {
     let found: Vec<Option<u32>> =
         (0..expected.len()).map(|half_edge| surface.twin(half_edge as u32)).collect();
     assert_eq!(found, expected, "{mesh:?}");
+    let doubles = (0..mesh.triangles.len()).filter(|&triangle| is_double(mesh, triangle));
+    assert!(
+        doubles.eq((0..mesh.triangles.len()).filter(|&i| surface.is_double(i as u32))),
+        "{mesh:?}"
+    );
     expected.iter().flatten().count()
 }
 
