@@ -2,7 +2,8 @@
 //!
 //! * Apart: both points are local minima of the distance ([`Around::is_local_minimum`]), and the
 //!   normal leads out of solids. Others are contacts of internal edges, or of walls that pass by.
-//!   Distant edges and vertices may pass each other, and count only if they face each other.
+//!   Distant edges and vertices may pass each other, and count only if they face each other or if nothing is
+//!   nearer.
 //! * Crossing: the contact leads out of solids, and both surfaces end where the overlap does.
 //!   Triangles of solids that have passed each other count as crossing.
 //!
@@ -58,6 +59,8 @@ const TOUCHING: f64 = 1.0e-9;
 /// Result of the first pass for two triangles.
 pub(super) enum Verdict {
     None,
+    /// Edges or vertices that may pass each other. They have a contact only if nothing is nearer.
+    Passing,
     /// A contact and, at a [border](super::borders), the one along the normal of the face.
     Contact(TriangleSurfaceContact, Option<TriangleContact>),
     /// The surfaces cross. A contact may still be rejected by the second pass.
@@ -69,6 +72,8 @@ pub(super) struct SurfaceFilter<'a, S> {
     pub(super) shapes: &'a S,
     pub(super) pose: &'a PairPose,
     pub(super) pair: [u32; 2],
+    /// True if edges and vertices may pass each other.
+    pub(super) may_pass: bool,
 }
 
 /// Surfaces of both shapes, if known.
@@ -101,8 +106,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             return if leads_inside { Verdict::None } else { Verdict::Contact(of_triangles, None) };
         }
         if !is_crossing {
-            if self.passes_by(local, &contact) {
-                return Verdict::None;
+            if self.may_pass && self.passes_by(local, &contact) {
+                return Verdict::Passing;
             }
             let is_minimum = |i: usize| self.is_minimum(&surfaces, i, local, &contact);
             let is_first_minimum = is_minimum(0);

@@ -61,6 +61,8 @@ struct FirstPass {
     contacts: ContactList<TriangleSurfaceContact>,
     /// Contacts at borders, along the normals of the faces.
     upright: ContactList<TriangleContact>,
+    /// Edges and vertices that may pass each other.
+    passing: ContactList<TriangleContact>,
     islands: OverlapIslands,
     /// True if triangles are in reach.
     is_near: bool,
@@ -70,6 +72,7 @@ struct FirstPass {
 impl FirstPass {
     fn clear(&mut self) {
         self.upright.clear();
+        self.passing.clear();
         self.islands.clear();
         self.is_near = false;
     }
@@ -79,6 +82,7 @@ impl ChunkResult for FirstPass {
     fn append(&mut self, next: Self) {
         self.contacts.extend(next.contacts);
         self.upright.extend(next.upright);
+        self.passing.extend(next.passing);
         self.islands.append(next.islands);
         self.is_near |= next.is_near;
     }
@@ -136,6 +140,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             chunk.iter_mut().for_each(|candidate| self.first_pass(candidate, limits, first));
         };
         in_chunks(candidates, LEAST_CANDIDATES, first, &pass);
+        self.add_passing(first);
         std::mem::swap(&mut first.contacts, contacts);
         let FirstPass { islands, clipped, is_near, upright, .. } = first;
         let lead_one_way = meet_borders(upright, contacts);
@@ -240,6 +245,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
                 first.islands.touching.push(pair);
             }
             Verdict::None => {}
+            Verdict::Passing => first.passing.push((pair, contact)),
             Verdict::Contact(contact, upright) => {
                 first.contacts.push((pair, contact));
                 first.upright.extend(upright.map(|upright| (pair, upright)));
@@ -252,7 +258,27 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     }
 
     fn filter(&self, pair: [u32; 2]) -> SurfaceFilter<'_, S> {
-        SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair }
+        SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair, may_pass: true }
+    }
+
+    /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.
+    fn add_passing(&self, first: &mut FirstPass) {
+        let FirstPass { contacts, upright, passing, islands, clipped, .. } = first;
+        if passing.is_empty() || !islands.crossings.is_empty() {
+            return;
+        }
+        let distances = contacts.iter().map(|(_, hit)| hit.contact.distance);
+        let nearest = distances.fold(f64::INFINITY, f64::min);
+        for &(pair, contact) in passing.iter().filter(|(_, contact)| contact.distance < nearest) {
+            let Some(local) = self.shapes.local(self.pose, pair) else { continue };
+            let filter = SurfaceFilter { may_pass: false, ..self.filter(pair) };
+            if let Verdict::Contact(hit, border) = filter.apply(&local, contact, clipped) {
+                contacts.push((pair, hit));
+                upright.extend(border.map(|border| (pair, border)));
+            }
+        }
+        contacts.sort_by_key(|(pair, _)| *pair);
+        upright.sort_by_key(|(pair, _)| *pair);
     }
 
     /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way` is the result of
