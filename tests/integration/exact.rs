@@ -1,9 +1,12 @@
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
+use rapier3d::parry::shape::Cuboid;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{Question, SETS, having, per_triangle, shape, touching};
+use crate::support::{Question, SETS, distance, having, per_triangle, shape, touching};
 use crate::truth::Tally;
 
 /// Sizes of meshes and prediction distances at which contacts must be right.
@@ -105,5 +108,36 @@ fn features_are_those_of_their_shape() {
             };
             assert!(floors.is_face() && cubes.is_vertex(), "{floors:?} {cubes:?}");
         }
+    }
+}
+
+/// Two bars of 12 to 3072 triangles that cross edge over edge, apart by less than what triangles are searched in. Would catch edges that
+/// are left out as passing by, though nothing else is as near.
+#[test]
+fn the_nearest_edges_of_crossed_bars_have_a_contact() {
+    let mut random = Rand32::new(2);
+    let dispatcher = SbbkDispatcher::default();
+    for i in 0..400 {
+        let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
+        let half: Real = [0.02, 0.1, 0.5][i % 3];
+        // Fine meshes have only far contacts beyond 0.04 radii.
+        let gap = within(0.05, 0.95) * (0.12 * half).min(0.02);
+        let turns =
+            [Quat::from_rotation_x(within(0.3, 1.2)), Quat::from_rotation_z(within(0.3, 1.2))];
+        let halves = [Vec3::new(3.0 * half, half, half), Vec3::new(half, half, 3.0 * half)];
+        let cells = [1, 4, 8, 16][i % 4];
+        let [bar1, bar2] = halves.map(|half| shape(&mesh::cuboid(half, cells)));
+        let [cuboid1, cuboid2] = halves.map(Cuboid::new);
+        let heights = [0, 1].map(|k| {
+            let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (turns[k] * axis).y.abs());
+            Vec3::new(x, y, z).dot(halves[k])
+        });
+        let place =
+            Vec3::new(within(-half, half), heights[0] + heights[1] + gap, within(-half, half));
+        let pose = Pose::from_rotation(turns[0]).inverse() * Pose::from_parts(place, turns[1]);
+        let truth = DefaultQueryDispatcher.distance(&pose, &cuboid1, &cuboid2).unwrap().distance;
+        let found = Question::new(&bar1, &bar2, pose).within(0.02).fresh(&dispatcher);
+        let nearest = found.iter().map(distance).fold(Real::INFINITY, Real::min);
+        assert!((nearest - truth).abs() < 1e-5, "{i}: {nearest}, {truth}");
     }
 }

@@ -38,6 +38,9 @@ const DEEPEST: f64 = 4.0;
 /// take turns for chunks of a few microseconds.
 const LEAST_CANDIDATES: usize = 256;
 
+/// Share of the least distance below which a distance is less. Higher: rounding decides where triangles have equal distances.
+const NEARER: f64 = 0.999;
+
 /// A query about two shapes made of triangles.
 pub(crate) struct TriangleQuery<'q, S> {
     pub(super) shapes: S,
@@ -269,7 +272,8 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         }
         let distances = contacts.iter().map(|(_, hit)| hit.contact.distance);
         let nearest = distances.fold(f64::INFINITY, f64::min);
-        for &(pair, contact) in passing.iter().filter(|(_, contact)| contact.distance < nearest) {
+        let is_nearest = |contact: &TriangleContact| contact.distance < NEARER * nearest;
+        for &(pair, contact) in passing.iter().filter(|(_, contact)| is_nearest(contact)) {
             let Some(local) = self.shapes.local(self.pose, pair) else { continue };
             let filter = SurfaceFilter { may_pass: false, ..self.filter(pair) };
             if let Verdict::Contact(hit, border) = filter.apply(&local, contact, clipped) {
@@ -291,14 +295,16 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         let (old_count, reach) = (contacts.len(), f64::from(self.shapes.reach()));
+        // The nearest contact counts, even if it may pass by.
+        let may_pass = old_count > 0;
         let far = FarSearch { shapes: &self.shapes, pose: self.pose };
         far.contacts(is_apart, |(pair, TriangleSurfaceContact { contact, .. })| {
             if contact.distance <= reach {
                 return;
             }
             let Some(local) = self.shapes.local(self.pose, pair) else { return };
-            let verdict = self.filter(pair).apply(&local, contact, clipped);
-            if let Verdict::Contact(mut hit, upright) = verdict {
+            let filter = SurfaceFilter { may_pass, ..self.filter(pair) };
+            if let Verdict::Contact(mut hit, upright) = filter.apply(&local, contact, clipped) {
                 hit.contact = upright.filter(|_| lead_one_way).unwrap_or(hit.contact);
                 contacts.push((pair, hit));
             }
