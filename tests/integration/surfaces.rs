@@ -257,8 +257,8 @@ fn surfaces_have_some_of_the_contacts_of_triangles_and_normals_of_length_one() {
     assert!(some > 500 && 3 * some < 2 * all, "{some} of {all}");
 }
 
-/// Cubes edge over edge, alone and with blocks beside them that nearly touch. Would catch edges without a contact where nothing
-/// is nearer, and edges that hold each other where something is.
+/// Cubes edge over edge, alone and with blocks beside them that nearly touch. Would catch edges that lack
+/// a contact though nothing is nearer. Would catch edges that hold each other, too.
 #[test]
 fn edges_pass_each_other_if_something_is_nearer() {
     let edge_up = Quat::from_rotation_x(FRAC_PI_4);

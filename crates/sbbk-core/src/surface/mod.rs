@@ -66,7 +66,7 @@ impl Surface {
         sides::RayMesh { triangles, open: self.open.as_ref(), memo }.side(triangle)
     }
 
-    /// True if an earlier triangle has the same corners, in either winding. Its contacts are those of the earlier one.
+    /// True if an earlier triangle has the same corners, in either winding. The earlier triangle has its contacts.
     #[inline]
     pub fn is_double(&self, triangle: u32) -> bool {
         self.doubles.contains(triangle)

@@ -132,7 +132,7 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     RayMesh { triangles, open: None, memo }.side(triangle)
 }
 
-/// A mesh, and what is known about the sides of its triangles.
+/// The triangles of a mesh, with the components and walls that are known.
 pub(super) struct RayMesh<'a, T> {
     pub(super) triangles: &'a T,
     /// Triangles of open components. `None`: no component is known to be closed.
@@ -349,7 +349,7 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         Some(Self { mesh, start, to_front, skipped, hits: Default::default() })
     }
 
-    /// What the rays find. Walls within the body count as nothing, unless the rays find a face with them.
+    /// Returns the side that the rays find. Walls within the body count as nothing, unless the rays find a face with them.
     fn side_without_walls(&self) -> Side {
         let found = self.side(|_| true);
         if found == Side::Outer { found } else { self.side(|other| self.mesh.counts(other)) }
