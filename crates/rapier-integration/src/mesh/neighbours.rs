@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
-    Around, Facets, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface, side,
+    Around, Facets, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface, place, side,
 };
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -144,7 +144,7 @@ impl Facets for MeshFacets<'_> {
 
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let near = BvhNode::leaf(box_between(corners), 0);
-        // A double is where its like is: to leave it out saves time, unless a search must tell.
+        // Doubles change no result. They are skipped where no search is needed to find them.
         let is_double =
             |triangle: &u32| matches!(self.twins, Twins::All(all, _) if all.is_double(*triangle));
         let near = self.mesh.bvh().leaves(|node| node.intersects(&near));
@@ -298,10 +298,9 @@ impl Neighbour {
     }
 }
 
-/// Returns the places of three corners in an order of their own.
-fn places(corners: [Vector; 3]) -> [[u32; 3]; 3] {
-    // Minus zero is zero.
-    let mut places = corners.map(|corner| (corner + Vector::ZERO).to_array().map(f32::to_bits));
+/// Returns the places of three corners, sorted.
+fn places(corners: [Vector; 3]) -> [Place; 3] {
+    let mut places = corners.map(place);
     places.sort_unstable();
     places
 }

@@ -270,6 +270,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         if passing.is_empty() || !islands.crossings.is_empty() {
             return;
         }
+        let old_count = contacts.len();
         let distances = contacts.iter().map(|(_, hit)| hit.contact.distance);
         let nearest = distances.fold(f64::INFINITY, f64::min);
         let is_nearest = |contact: &TriangleContact| contact.distance < NEARER * nearest;
@@ -281,8 +282,10 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
                 upright.extend(border.map(|border| (pair, border)));
             }
         }
-        contacts.sort_by_key(|(pair, _)| *pair);
-        upright.sort_by_key(|(pair, _)| *pair);
+        if contacts.len() > old_count {
+            contacts.sort_by_key(|(pair, _)| *pair);
+            upright.sort_by_key(|(pair, _)| *pair);
+        }
     }
 
     /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way` is the result of

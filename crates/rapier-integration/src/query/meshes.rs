@@ -77,7 +77,7 @@ impl<'a> MeshQuery<'a> {
 
     /// Returns triangles that touch, if any do.
     pub(super) fn touching(&self) -> Option<[u32; 2]> {
-        // Hashes of small meshes would take longer than most of these queries.
+        // Most of these queries take less time than the hash of a small mesh.
         let [mesh1, mesh2] = self.meshes.each_ref().map(MeshView::registered);
         let pair = if let (Some(tree1), Some(tree2)) = (mesh1, mesh2) {
             search_trees([tree1, tree2], |trees, scratch| meeting(trees, self.placement, scratch))

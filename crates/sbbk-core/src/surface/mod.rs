@@ -15,6 +15,7 @@ mod twins;
 pub use one_ring::{Around, Facets};
 pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
+pub use twins::{Place, place};
 
 use glamx::Vec3;
 use rustc_hash::FxHashMap;

@@ -101,9 +101,10 @@ fn doubles(welded: &[u32], triangles: &[[u32; 3]], twins: &[Option<u32>]) -> Tri
 }
 
 /// A place where vertices are one.
-pub(super) type Place = [u32; 3];
+pub type Place = [u32; 3];
 
-pub(super) fn place(vertex: Vec3) -> Place {
+/// Returns the place of a vertex.
+pub fn place(vertex: Vec3) -> Place {
     // Minus zero is zero.
     (vertex + Vec3::ZERO).to_array().map(f32::to_bits)
 }
@@ -182,8 +183,8 @@ struct Edge {
 
 /// All edges in the order of their first half-edges, and the number of list steps.
 ///
-/// Each edge is listed at that end which fewer triangles share. The lists of planar graphs then take
-/// a constant number of steps an edge, whatever the valence of single vertices.
+/// Each edge is listed at that end which fewer triangles share. An edge of a planar
+/// graph then takes a constant number of list steps at any valence.
 fn edges(
     welded: &[u32],
     valence: &[u32],
