@@ -1,5 +1,5 @@
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicU16, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use glamx::DVec3;
@@ -11,7 +11,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
-    Around, Facets, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface, place, side,
+    Around, Facets, NormalCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
+    place, side,
 };
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -115,6 +116,13 @@ impl MeshFacets<'_> {
             self.with_flags(triangle, |flags| flags.set(feature, found));
         }
     }
+
+    #[cold]
+    fn find_cones(self, triangle: u32) -> NormalCones {
+        let cones = NormalCones::of(&Around { facets: self, side: Side::Sheet }, triangle);
+        self.with_flags(triangle, |flags| flags.set_cones(cones));
+        cones
+    }
 }
 
 impl Facets for MeshFacets<'_> {
@@ -151,22 +159,29 @@ impl Facets for MeshFacets<'_> {
         let _ = near.filter(|triangle| !is_double(triangle)).try_for_each(visit);
     }
 
+    /// Meshes that are not analysed as a whole have none, as each needs a search for neighbours.
+    #[inline]
+    fn cones(&self, triangle: u32) -> NormalCones {
+        let Twins::All(_, flags) = self.twins else { return NormalCones::ALL };
+        flags[triangle as usize].cones().unwrap_or_else(|| self.find_cones(triangle))
+    }
+
     fn memo(&self) -> Option<&PlaceMemo> {
         Some(self.memo)
     }
 }
 
-/// Memory of searches around a triangle: strays of its edges and vertices, and its [`Side`].
+/// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], and its [`NormalCones`].
 #[derive(Debug, Default)]
-pub(crate) struct TriangleFlags(AtomicU16);
+pub(crate) struct TriangleFlags(AtomicU32);
 
 /// [`Side`] by the number in the flags.
 const SIDES: [Side; 4] = [Side::Outer, Side::Turned, Side::Inner, Side::Sheet];
 
 impl TriangleFlags {
-    const HAS_SIDE: u16 = 1 << 7;
+    const HAS_SIDE: u32 = 1 << 7;
 
-    fn bits(feature: Feature) -> [u16; 2] {
+    fn bits(feature: Feature) -> [u32; 2] {
         let place = match feature {
             Feature::Edge(i) => i,
             Feature::Vertex(i) => 3 + i,
@@ -184,11 +199,20 @@ impl TriangleFlags {
 
     fn side(&self) -> Option<Side> {
         let flags = self.0.load(Ordering::Relaxed);
-        (flags & Self::HAS_SIDE != 0).then(|| SIDES[usize::from(flags >> 14)])
+        (flags & Self::HAS_SIDE != 0).then(|| SIDES[flags as usize >> 14 & 3])
     }
 
     fn set_side(&self, side: Side) {
-        self.0.fetch_or(Self::HAS_SIDE | (side as u16) << 14, Ordering::Relaxed);
+        self.0.fetch_or(Self::HAS_SIDE | (side as u32) << 14, Ordering::Relaxed);
+    }
+
+    #[inline]
+    fn cones(&self) -> Option<NormalCones> {
+        NormalCones::of_bits((self.0.load(Ordering::Relaxed) >> 16) as u16)
+    }
+
+    fn set_cones(&self, cones: NormalCones) {
+        self.0.fetch_or(u32::from(cones.bits()) << 16, Ordering::Relaxed);
     }
 
     fn set(&self, feature: Feature, found: bool) {
@@ -199,7 +223,7 @@ impl TriangleFlags {
 
 impl Clone for TriangleFlags {
     fn clone(&self) -> Self {
-        Self(AtomicU16::new(self.0.load(Ordering::Relaxed)))
+        Self(AtomicU32::new(self.0.load(Ordering::Relaxed)))
     }
 }
 

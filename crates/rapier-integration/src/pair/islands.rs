@@ -279,15 +279,18 @@ impl OverlapIslands {
         self.separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
     }
 
-    /// Returns true if a contact pushes neither against the reliable ones of its island, nor through a
-    /// sheet.
-    pub(super) fn agrees(&mut self, pair: [u32; 2], normal: DVec3) -> bool {
-        let agrees = |Support { normals, sheet_side, way, .. }: Support| {
-            normals.dot(normal) >= 0.0
-                && sheet_side.dot(normal) >= 0.0
-                && way.is_none_or(|way| way.has(normal))
-        };
-        self.leads_apart(normal) && self.support_of(pair).is_none_or(agrees)
+    /// Returns a test of normals. It is true for contacts that push neither against the reliable ones of their island, nor
+    /// through a sheet.
+    pub(super) fn agrees(&mut self, pair: [u32; 2]) -> impl Fn(DVec3) -> bool {
+        let support = self.support_of(pair);
+        move |normal| {
+            let agrees = |Support { normals, sheet_side, way, .. }: Support| {
+                normals.dot(normal) >= 0.0
+                    && sheet_side.dot(normal) >= 0.0
+                    && way.is_none_or(|way| way.has(normal))
+            };
+            self.leads_apart(normal) && support.is_none_or(agrees)
+        }
     }
 
     /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against

@@ -23,7 +23,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
-use sbbk_core::surface::{Around, Facets, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::surface::{Around, Facets, NormalCones, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::traverse::{DescentCounts, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
@@ -144,6 +144,13 @@ impl Facets for MeshOrField<'_> {
         match self {
             Self::Mesh(mesh) => mesh.near(corners, visit),
             Self::Field(field) => field.near(corners, visit),
+        }
+    }
+
+    fn cones(&self, triangle: u32) -> NormalCones {
+        match self {
+            Self::Mesh(mesh) => mesh.cones(triangle),
+            Self::Field(field) => field.cones(triangle),
         }
     }
 

@@ -15,9 +15,11 @@
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use parry3d::query::Ray;
-use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
+use sbbk_core::contact::{
+    Feature, ManifoldPoints, TriangleContact, extremal_penetration, outward_penetration,
+};
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{Around, Side};
+use sbbk_core::surface::{Around, Facets, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
@@ -207,13 +209,14 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         contact: &TriangleContact,
         clipped: &mut ManifoldPoints,
     ) -> Verdict {
-        let [t1, t2] = &local.corners;
         let is_solid = solids::<S>(surfaces);
         let is_crossing = contact.features.is_crossing();
         let shallow = near(self.shapes, self.pose);
         let greatest = SHALLOW * contact.distance.abs().max(shallow);
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(surfaces, i, feature, axis);
-        let good = penetration_out_of_solid(t1, t2, is_solid, ends, Some(greatest), clipped);
+        let cones = [0, 1].map(|i| self.least_square(surfaces, i));
+        let triangles = local.corners.each_ref();
+        let good = extremal_penetration(triangles, is_solid, cones, ends, greatest, clipped);
         if good.is_none() && !is_crossing && is_touching(local, contact, TOUCHING) {
             return Verdict::None;
         }
@@ -251,16 +254,14 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             return None;
         }
         let surfaces = self.surfaces(local);
-        let [t1, t2] = &local.corners;
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(&surfaces, i, feature, axis);
-        let contact =
-            penetration_out_of_solid(t1, t2, solids::<S>(&surfaces), ends, None, clipped)?;
+        let (triangles, is_solid) = (local.corners.each_ref(), solids::<S>(&surfaces));
+        let cones = [0, 1].map(|i| self.least_square(&surfaces, i));
+        let agrees = islands.agrees(self.pair);
+        let contact = outward_penetration(triangles, is_solid, cones, ends, agrees, clipped)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
-        let is_meant = is_overlap
-            && islands.agrees(self.pair, contact.normal)
-            && (is_shallow || self.is_far_inside(local, &contact));
-        if !is_meant {
+        if !is_overlap || !is_shallow && !self.is_far_inside(local, &contact) {
             return None;
         }
         // Between two rows of triangles of a flat side neither has an overlap as deep as that side.
@@ -393,6 +394,12 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let ends =
             |surface: &Around<_>| surface.is_local_minimum(self.pair[i], feature, axis, None);
         surfaces[i].as_ref().is_none_or(ends)
+    }
+
+    /// Returns the square of the least cosine between the normal of a triangle and an axis along which its surface may end.
+    fn least_square(&self, surfaces: &Surfaces<'_, S>, i: usize) -> f64 {
+        let Some(Around { facets, .. }) = &surfaces[i] else { return 0.0 };
+        facets.cones(self.pair[i]).least_square(false)
     }
 
     /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller sheet,

@@ -29,101 +29,176 @@ const SHOWN: f64 = 0.9;
 /// sizes. Higher: edges count as level. Lower: rounding picks a vertex.
 const LEVEL: f64 = 1.0e-6;
 
-/// Returns the contact of two overlapping triangles along the outward axis of least overlap.
-/// `solid` is true for triangles of a solid, whose normals point outside. `is_extremal` returns
-/// true if no neighbour of a feature of triangle 1 (0) or 2 (1) is farther in a direction. Extremal
-/// axes come first.
+/// Returns the contact of two overlapping triangles along the outward axis of least overlap among the extremal ones, if
+/// that is at most `most`.
 ///
-/// The distance is that of the deepest points; `out` gets the points of [`clip`](super::clip).
-/// Returns `None` if the triangles face away from each other, or if no points are in line with the
-/// axis.
+/// `solid` is true for triangles of a solid, whose normals point outside. `is_extremal` returns true if no neighbour of a
+/// feature of triangle 1 (0) or 2 (1) is farther in a direction. It must be false where the square of the cosine between the
+/// direction and the normal is less than that of `cones`.
 ///
-/// With `most`, returns only an extremal contact of at most this depth, at less cost.
-pub fn penetration_out_of_solid(
-    t1: &[DVec3; 3],
-    t2: &[DVec3; 3],
+/// The distance is that of the deepest points; `out` gets the points of [`clip`](super::clip). Returns `None` if these show
+/// less than the overlap.
+pub fn extremal_penetration(
+    triangles: [&[DVec3; 3]; 2],
     solid: [bool; 2],
+    cones: [f64; 2],
     is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-    most: Option<f64>,
+    most: f64,
     out: &mut ManifoldPoints,
 ) -> Option<TriangleContact> {
-    let triangles @ [t1, t2] = [&Triangle::new(t1), &Triangle::new(t2)];
-    let axes = axes(triangles, solid, most.map_or(f64::INFINITY, |most| most / SHOWN));
-    let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
-    let extremal = axes.iter().find(|&&(_, axis)| ends(0, t1, axis) && ends(1, t2, -axis));
-    let any = || axes.first().filter(|_| most.is_none());
-    let &(gap, normal) = extremal.or_else(any)?;
-    clip_triangles(t1, t2, normal, out);
-    let contact = deepest(out, normal)?;
-    let contact = TriangleContact { features: contact.features.crossing(), ..contact };
-    let is_shown = contact.distance <= SHOWN * gap;
-    most.is_none_or(|most| is_shown && contact.distance >= -most).then_some(contact)
+    let pair = Outward::new(triangles.map(Triangle::new), solid);
+    let (gap, normal) = pair.extremal_axis(cones, most / SHOWN, is_extremal)?;
+    let contact = pair.contact_along(normal, out)?;
+    (contact.distance <= SHOWN * gap && contact.distance >= -most).then_some(contact)
+}
+
+/// Returns the contact of two overlapping triangles along the outward axis of least overlap, if a contact with that normal
+/// `may_count`. Extremal axes come first. The parameters are those of [`extremal_penetration`].
+pub fn outward_penetration(
+    triangles: [&[DVec3; 3]; 2],
+    solid: [bool; 2],
+    cones: [f64; 2],
+    is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
+    may_count: impl Fn(DVec3) -> bool,
+    out: &mut ManifoldPoints,
+) -> Option<TriangleContact> {
+    let pair = Outward::new(triangles.map(Triangle::new), solid);
+    let mut may_any = false;
+    pair.for_each(|direction, _| may_any = may_any || may_count(direction.normalize()));
+    if !may_any {
+        return None;
+    }
+    let extremal = pair.extremal_axis(cones, f64::INFINITY, is_extremal);
+    let (_, normal) = extremal.or_else(|| pair.least_axis())?;
+    may_count(normal).then(|| pair.contact_along(normal, out))?
 }
 
 /// The gap along an axis, and the axis.
 type OutwardAxis = (f64, DVec3);
 
-/// The outward axes along which the triangles overlap by at most `most`, least overlap first.
-fn axes([t1, t2]: [&Triangle; 2], solid: [bool; 2], most: f64) -> ArrayVec<OutwardAxis, 22> {
-    let areas = [t1.area_vector(), t2.area_vector()];
-    let [normal1, normal2] = areas.map(|area| area.normalize_or_zero());
-    let mut axes = ArrayVec::new();
-    let mut consider = |direction: DVec3| {
-        let length_squared = direction.length_squared();
-        let is_out = |is_solid: bool, along: f64| {
-            !is_solid || along >= 0.0 || along * along <= LEAN * LEAN * length_squared
+/// Two overlapping triangles, whose axes lead out of solids.
+struct Outward<'t> {
+    triangles: [Triangle<'t>; 2],
+    normals: [DVec3; 2],
+    solid: [bool; 2],
+}
+
+impl<'t> Outward<'t> {
+    fn new(triangles: [Triangle<'t>; 2], solid: [bool; 2]) -> Self {
+        let normals = [0, 1].map(|i| triangles[i].area_vector().normalize_or_zero());
+        Self { triangles, normals, solid }
+    }
+
+    /// Returns true if no axis is in both cones, given by squares of cosines.
+    fn are_cones_apart(&self, [square1, square2]: [f64; 2]) -> bool {
+        let [normal1, normal2] = self.normals;
+        // The cosine of the sum of both angles.
+        let least = (square1 * square2).sqrt() - ((1.0 - square1) * (1.0 - square2)).sqrt();
+        normal1.dot(normal2).abs() < least
+    }
+
+    /// Returns the extremal axis of least overlap, if that is at most `most`.
+    fn extremal_axis(
+        &self,
+        cones: [f64; 2],
+        most: f64,
+        is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
+    ) -> Option<OutwardAxis> {
+        if self.are_cones_apart(cones) {
+            return None;
+        }
+        let mut axes = ArrayVec::<OutwardAxis, 22>::new();
+        self.for_each(|direction, heights| {
+            let square = direction.length_squared();
+            // Before the division: most directions end here.
+            if (0..2).any(|i| heights[i] * heights[i] < cones[i] * square) {
+                return;
+            }
+            axes.extend(Some(self.axis(direction)).filter(|(gap, _)| *gap >= -most));
+        });
+        axes.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
+        let is_end = |(_, axis): &OutwardAxis| {
+            let ways = [*axis, -*axis];
+            (0..2).all(|i| is_extremal(i, farthest(&self.triangles[i], ways[i]), ways[i]))
         };
-        // Before the division: most directions end here.
-        if is_out(solid[0], direction.dot(normal1)) && is_out(solid[1], -direction.dot(normal2)) {
-            let axis = direction / length_squared.sqrt();
-            let ([_, max1], [min2, _]) =
-                (t1.shadow(DVec3::ZERO, axis), t2.shadow(DVec3::ZERO, axis));
-            let gap = min2 - max1;
-            if gap >= -most {
-                axes.push((gap, axis));
+        axes.into_iter().find(is_end)
+    }
+
+    /// Returns the outward axis of least overlap.
+    fn least_axis(&self) -> Option<OutwardAxis> {
+        let mut least: Option<OutwardAxis> = None;
+        self.for_each(|direction, _| {
+            let axis = self.axis(direction);
+            least = least.filter(|known| known.0 >= axis.0).or(Some(axis));
+        });
+        least
+    }
+
+    /// Returns the gap along a direction of any length, and the axis.
+    fn axis(&self, direction: DVec3) -> OutwardAxis {
+        let [t1, t2] = &self.triangles;
+        let axis = direction.normalize();
+        let ([_, max1], [min2, _]) = (t1.shadow(DVec3::ZERO, axis), t2.shadow(DVec3::ZERO, axis));
+        (min2 - max1, axis)
+    }
+
+    /// Calls `visit` with each direction that leads out of the solids, of any length, and its heights along both normals.
+    fn for_each(&self, mut visit: impl FnMut(DVec3, [f64; 2])) {
+        let [t1, t2] = &self.triangles;
+        let [normal1, normal2] = self.normals;
+        let mut consider = |direction: DVec3| {
+            let heights = [direction.dot(normal1), -direction.dot(normal2)];
+            let most = LEAN * LEAN * direction.length_squared();
+            let is_out =
+                |i: usize| !self.solid[i] || heights[i] >= 0.0 || heights[i] * heights[i] <= most;
+            if is_out(0) && is_out(1) {
+                visit(direction, heights);
+            }
+        };
+        for normal in [normal1, normal2] {
+            if normal != DVec3::ZERO {
+                consider(normal);
+                consider(-normal);
             }
         }
-    };
-    for normal in [normal1, normal2] {
-        if normal != DVec3::ZERO {
-            consider(normal);
-            consider(-normal);
-        }
-    }
-    // Sign with which an edge runs through the plane of the other triangle; 0 if nearly parallel.
-    let slopes = |t: &Triangle, normal: DVec3| {
-        t.edges.map(|edge| {
-            let slope = edge.dot(normal);
-            if slope * slope <= STEEP * STEEP * edge.length_squared() {
-                0.0
-            } else {
-                slope.signum()
+        let (slopes1, slopes2) = (slopes(t1, normal2), slopes(t2, normal1));
+        for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
+            // The edges are in front only if both have one sign, that of the axis (see `axes.rs`).
+            let (sign1, sign2) = (slopes1[i], slopes2[j]);
+            if sign1 * sign2 < 0.0 {
+                continue;
             }
-        })
-    };
-    let (slopes1, slopes2) = (slopes(t1, normal2), slopes(t2, normal1));
-    for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
-        // The edges are in front only if both have one sign, that of the axis (see `axes.rs`).
-        let (sign1, sign2) = (slopes1[i], slopes2[j]);
-        if sign1 * sign2 < 0.0 {
-            continue;
-        }
-        let (e1, e2) = (t1.edges[i], t2.edges[j]);
-        let cross = e1.cross(e2);
-        let least = NEAR_PARALLEL * NEAR_PARALLEL * e1.length_squared() * e2.length_squared();
-        if cross.length_squared() <= least {
-            continue;
-        }
-        let sign = sign1 + sign2;
-        if sign >= 0.0 {
-            consider(cross);
-        }
-        if sign <= 0.0 {
-            consider(-cross);
+            let (e1, e2) = (t1.edges[i], t2.edges[j]);
+            let cross = e1.cross(e2);
+            let least = NEAR_PARALLEL * NEAR_PARALLEL * e1.length_squared() * e2.length_squared();
+            if cross.length_squared() <= least {
+                continue;
+            }
+            let sign = sign1 + sign2;
+            if sign >= 0.0 {
+                consider(cross);
+            }
+            if sign <= 0.0 {
+                consider(-cross);
+            }
         }
     }
-    axes.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
-    axes
+
+    /// Returns the contact along an axis; `None` if no points are in line with the axis.
+    fn contact_along(&self, axis: DVec3, out: &mut ManifoldPoints) -> Option<TriangleContact> {
+        let [t1, t2] = &self.triangles;
+        clip_triangles(t1, t2, axis, out);
+        let contact = deepest(out, axis)?;
+        Some(TriangleContact { features: contact.features.crossing(), ..contact })
+    }
+}
+
+/// Returns signs with which edges run through a plane; 0 if nearly parallel.
+fn slopes(t: &Triangle, normal: DVec3) -> [f64; 3] {
+    t.edges.map(|edge| {
+        let slope = edge.dot(normal);
+        if slope * slope <= STEEP * STEEP * edge.length_squared() { 0.0 } else { slope.signum() }
+    })
 }
 
 /// The feature that is farthest along an axis.

@@ -4,6 +4,7 @@
 //! corner of the body, or lies within a flat face. A [`Surface`] stores the neighbours across each edge, of
 //! welded vertices, and derives from rays if the triangles bound a solid.
 
+mod cones;
 mod meeting;
 mod one_ring;
 mod sides;
@@ -12,6 +13,7 @@ pub mod strays;
 mod triangle;
 mod twins;
 
+pub use cones::NormalCones;
 pub use one_ring::{Around, Facets};
 pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;

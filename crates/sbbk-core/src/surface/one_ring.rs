@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use glamx::DVec3;
 
+use super::cones::NormalCones;
 use super::sides::Side;
 use super::slopes::{Bend, FLAT, Heights, LONG, PlaceMemo, Slopes};
 use super::triangle::{area_vector, seam, touches};
@@ -26,6 +27,11 @@ pub trait Facets {
     /// Calls `visit` with all triangles near the box between two corners, to find strays. May end when it breaks.
     fn near(&self, _corners: [DVec3; 2], _visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
 
+    /// Bounds of the directions that may be local minima at a triangle. They spare the look at its neighbours.
+    fn cones(&self, _triangle: u32) -> NormalCones {
+        NormalCones::ALL
+    }
+
     /// Memory for places where many triangles meet.
     fn memo(&self) -> Option<&PlaceMemo> {
         None
@@ -45,11 +51,11 @@ pub struct Around<F> {
 /// Sine of the angle by which a neighbour may rise towards a direction and still count as no nearer,
 /// where the surface bends as much. Higher: bodies catch on edges between facets. Lower: faces that
 /// lie on each other, not quite flat, lose contacts.
-const RISE: f64 = 0.05;
+pub(super) const RISE: f64 = 0.05;
 
 /// [`RISE`] if the other feature is a face. Higher: blunt edges stop bodies that slide over
 /// them. Lower: a body that rocks from point to point gets the next point too late.
-const RISE_TO_FACE: f64 = 0.3;
+pub(super) const RISE_TO_FACE: f64 = 0.3;
 
 /// Triangles near the point of an impact that are looked at. Higher: slow casts at the hub of a fan. Lower: casts
 /// along walls stop where many triangles meet.
@@ -78,12 +84,15 @@ impl<F: Facets> Around<F> {
             let leads_in = self.is_solid() && height < 0.0;
             return is_upright && !leads_in;
         }
-        let most = match contact {
-            Some((_, Feature::Face)) => RISE_TO_FACE,
-            _ => RISE,
-        };
+        let to_face = matches!(contact, Some((_, Feature::Face)));
+        let most = if to_face { RISE_TO_FACE } else { RISE };
+        let normal = self.normal(triangle);
+        let least = self.facets.cones(triangle).least_square(to_face);
+        if normal.dot(direction).powi(2) < least * normal.length_squared() {
+            return false;
+        }
         let mut slopes = Slopes::default();
-        let mut bend = Bend::from(self.normal(triangle));
+        let mut bend = Bend::from(normal);
         let (mut count, mut height) = (0, 0.0);
         self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
             for (edge, is_new) in [(u, are_new[0]), (v, are_new[1])] {
@@ -386,7 +395,7 @@ impl<F: Facets> Around<F> {
     /// Visits the one-ring of an edge or a vertex, starting with `triangle`, until `visit` breaks.
     /// Returns true if the ring closes.
     #[inline(always)]
-    fn visit(
+    pub(super) fn visit(
         &self,
         triangle: u32,
         feature: Feature,
@@ -439,11 +448,11 @@ impl<F: Facets> Around<F> {
 }
 
 /// A triangle of a one-ring.
-struct Wedge {
+pub(super) struct Wedge {
     /// Starts at the vertex, or at an end of the edge.
     half_edge: u32,
     /// Two edges of the triangle, from there.
-    edges: [DVec3; 2],
+    pub(super) edges: [DVec3; 2],
     /// True for edges that no earlier triangle of the ring has.
     are_new: [bool; 2],
 }

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 /// Rise of a neighbour in bends of the surface, as it bends on both sides of a triangle. Higher: blunt
 /// edges stop bodies. Lower: a polyhedron that rolls meets the next vertex late and is braked.
-const BENDS: f64 = 2.0;
+pub(super) const BENDS: f64 = 2.0;
 
 /// Sine of the angle up to which triangles count as one plane, and directions as parallel to it.
 /// Higher: a nut locks on its bolt. Lower: flat sides end at rounding.

@@ -2,7 +2,9 @@
 
 use crate::support::Random;
 use glamx::DVec3;
-use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, contact};
+use sbbk_core::contact::{
+    Feature, ManifoldPoints, TriangleContact, contact, extremal_penetration, outward_penetration,
+};
 
 type Triangle = [DVec3; 3];
 
@@ -14,15 +16,14 @@ fn penetration(
     ends: impl Fn(usize, Feature, DVec3) -> bool,
 ) -> Option<(TriangleContact, bool)> {
     let mut points = ManifoldPoints::new();
-    let mut find = |most| {
-        sbbk_core::contact::penetration_out_of_solid(t1, t2, solid, &ends, most, &mut points)
-    };
-    let found = find(None);
-    // With a limit of depth, only extremal contacts count.
-    let extremal = find(Some(1e9));
+    let found = outward_penetration([t1, t2], solid, [0.0; 2], &ends, |_| true, &mut points);
+    let other = |normal: DVec3| found.is_some_and(|contact| contact.normal != normal);
+    assert_eq!(outward_penetration([t1, t2], solid, [0.0; 2], &ends, other, &mut points), None);
+    let mut find = |most| extremal_penetration([t1, t2], solid, [0.0; 2], &ends, most, &mut points);
+    let extremal = find(1e9);
     assert!(extremal.is_none() || extremal == found);
     for most in [0.001, 0.1, 10.0] {
-        assert_eq!(find(Some(most)), extremal.filter(|contact| contact.distance >= -most));
+        assert_eq!(find(most), extremal.filter(|contact| contact.distance >= -most));
     }
     found.map(|contact| (contact, extremal.is_some()))
 }

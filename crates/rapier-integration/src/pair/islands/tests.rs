@@ -76,8 +76,8 @@ fn one_contact_does_not_support_a_large_island() {
             islands.support.get(&(0, 1)).is_some_and(|support| !support.is_enough())
         );
         assert!(!needs_more || islands.is_final([1, 0]));
-        assert!(islands.agrees([1, 0], DVec3::new(1.0, 0.1, 0.0)));
-        assert!(!islands.agrees([1, 0], -DVec3::Y));
+        assert!(islands.agrees([1, 0])(DVec3::new(1.0, 0.1, 0.0)));
+        assert!(!islands.agrees([1, 0])(-DVec3::Y));
         needs_more && islands.needs_support([1, pairs - 1])
     };
     assert_eq!([8, 9].map(|pairs| needs_support(pairs, 1)), [false, true]);
@@ -102,8 +102,8 @@ fn of_contacts_both_ways_those_along_the_way_stay() {
     assert!(both.is_undecided() && both.separation.is_none());
     assert!(both.finish_first_pass(Some(DVec3::Y)) && both.separation.is_some());
     assert_eq!([1, 2, 3].map(|i| both.is_final([i, i])), [true, false, true]);
-    assert!(both.needs_support([2, 2]) && !both.agrees([2, 2], -DVec3::Y));
-    assert!(both.agrees([2, 2], DVec3::X) && both.agrees([2, 2], aslant));
+    assert!(both.needs_support([2, 2]) && !both.agrees([2, 2])(-DVec3::Y));
+    assert!(both.agrees([2, 2])(DVec3::X) && both.agrees([2, 2])(aslant));
     let mut none = OverlapIslands::default();
     none.crossings.push(crossing([1, 1], None, None));
     assert!(none.is_undecided(), "none is good");
@@ -167,8 +167,8 @@ fn few_contacts_do_not_push_through_a_sheet() {
     };
     let (is_lost, is_final, mut islands) = finish(0.01, SUPPORTED + 1);
     assert!(is_lost && !is_final);
-    assert!(islands.agrees([1, 0], DVec3::Y) && !islands.agrees([1, 0], -DVec3::Y));
+    assert!(islands.agrees([1, 0])(DVec3::Y) && !islands.agrees([1, 0])(-DVec3::Y));
     let (is_lost, is_final, mut islands) = finish(-0.01, SUPPORTED + 1);
-    assert!(is_lost && is_final && !islands.agrees([1, 0], DVec3::Y));
+    assert!(is_lost && is_final && !islands.agrees([1, 0])(DVec3::Y));
     assert!(!finish(0.01, SUPPORTED).0, "it is held");
 }

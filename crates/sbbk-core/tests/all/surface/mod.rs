@@ -1,5 +1,7 @@
 //! Neighbours, sides and kinds of surfaces, by definitions that look at everything.
 
+/// Directions of local minima.
+mod cones;
 /// Solids and sheets.
 mod kinds;
 /// Meshes whose kind is known.
