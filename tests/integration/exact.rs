@@ -1,9 +1,11 @@
+use std::f32::consts::PI;
+
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::Cuboid;
+use rapier3d::parry::shape::{Cuboid, SharedShape};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{Question, SETS, distance, having, per_triangle, shape, touching};
@@ -139,5 +141,40 @@ fn the_nearest_edges_of_crossed_bars_have_a_contact() {
         let found = Question::new(&bar1, &bar2, pose).within(0.02).fresh(&dispatcher);
         let nearest = found.iter().map(distance).fold(Real::INFINITY, Real::min);
         assert!((nearest - truth).abs() < 1e-5, "{i}: {nearest}, {truth}");
+    }
+}
+
+/// A roof of two slopes, with triangles that get smaller towards the middle of its ridge along the x axis.
+fn roof(length: Real, cells: i32) -> SharedShape {
+    let place = |i: i32| length * i as Real * i.abs() as Real / (cells * cells) as Real;
+    let row = |i: i32| (-cells..=cells).map(move |j| [place(i), -place(j.abs()), place(j)]);
+    let vertices = (-cells..=cells).flat_map(row).map(Vec3::from_array).collect();
+    let width = 2 * cells as u32 + 1;
+    let cell =
+        |first: u32| [[0, 1, width + 1], [0, width + 1, width]].map(|of| of.map(|i| first + i));
+    let rows = (0..width - 1).flat_map(|i| (0..width - 1).map(move |j| i * width + j));
+    SharedShape::trimesh(vertices, rows.flat_map(cell).collect()).unwrap()
+}
+
+/// Triangles at the nearest points are much smaller than their distance. Would catch triangles that a descent
+/// rejects as beside each other, though nothing else is as near.
+#[test]
+fn the_nearest_ridges_of_fine_roofs_have_a_contact() {
+    let mut random = Rand32::new(3);
+    let dispatcher = SbbkDispatcher::default();
+    let roofs = [0, 1].map(|i| roof(0.5, 20 + i));
+    for prepared in [false, true] {
+        let _keep = prepared.then(|| roofs.each_ref().map(|roof| dispatcher.prepare_shape(roof)));
+        for _ in 0..50 {
+            let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
+            let gap = within(0.006, 0.019);
+            let turn = Quat::from_rotation_y(within(0.5, 2.5)) * Quat::from_rotation_x(PI);
+            let place = Vec3::new(within(-1e-3, 1e-3), gap, within(-1e-3, 1e-3));
+            let query = Question::new(&*roofs[0].0, &*roofs[1].0, Pose::from_parts(place, turn));
+            let query = query.within(0.02);
+            let found = query.fresh(&dispatcher);
+            let nearest = found.iter().map(distance).fold(Real::INFINITY, Real::min);
+            assert!((nearest - gap).abs() < 1e-5, "{nearest}, {gap}");
+        }
     }
 }

@@ -160,23 +160,29 @@ impl<'a> LazySurface<'a> {
         self.data.get_or_init(|| self.view.store.entry(self.view.mesh))
     }
 
-    /// Returns the triangles of the mesh, its kind, and true if a user declared the kind.
+    /// Returns the triangles of the mesh with their adjacency.
     #[inline]
-    fn facets(&self) -> (MeshFacets<'_>, SurfaceKind, bool) {
+    pub(crate) fn facets(&self) -> MeshFacets<'_> {
         let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
         let twins = match self.near {
             Some(known) => Twins::Near(known),
             // Computes the flags as well.
             None => Twins::All(store.surface(mesh, data), data.flags()),
         };
-        let facets = MeshFacets { mesh, twins, memo: &self.memo };
-        (facets, data.kind_of(mesh), data.declared_kind().is_some())
+        MeshFacets { mesh, twins, memo: &self.memo }
+    }
+
+    /// Returns the kind of the mesh, and true if a user declared it.
+    #[inline]
+    fn declared_kind(&self) -> (SurfaceKind, bool) {
+        let data = self.data();
+        (data.kind_of(self.view.mesh), data.declared_kind().is_some())
     }
 
     /// Returns the surface around a triangle. A double counts as a wall within, so it has no contacts.
     #[inline]
     pub(crate) fn around(&self, triangle: u32) -> Around<MeshFacets<'_>> {
-        let (facets, kind, is_declared) = self.facets();
+        let (facets, (kind, is_declared)) = (self.facets(), self.declared_kind());
         let side = match kind {
             _ if facets.is_double(triangle) => Side::Inner,
             SurfaceKind::Sheet => Side::Sheet,
@@ -198,7 +204,7 @@ impl<'a> LazySurface<'a> {
 
     /// Returns true if a user declared that the mesh is a solid.
     pub(crate) fn is_declared_solid(&self) -> bool {
-        let (_, kind, is_declared) = self.facets();
+        let (kind, is_declared) = self.declared_kind();
         is_declared && kind == SurfaceKind::Solid
     }
 
@@ -215,7 +221,7 @@ impl<'a> LazySurface<'a> {
 
     /// Returns the kind of the mesh.
     pub(crate) fn kind(&self) -> SurfaceKind {
-        self.facets().1
+        self.data().kind_of(self.view.mesh)
     }
 }
 

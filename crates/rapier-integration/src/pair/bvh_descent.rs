@@ -22,6 +22,14 @@ const GROUP: usize = 64;
 /// nothing.
 const LEAST_GROUP: usize = 16;
 
+/// A test for triangles beside each other.
+#[derive(Copy, Clone)]
+pub(crate) struct Culling<'a> {
+    pub(crate) lateral: LateralCulling,
+    /// Returns true if pairs beside a triangle of mesh 1 (0) or 2 (1) may be left out.
+    pub(crate) may_reject: &'a (dyn Fn(usize, u32) -> bool + Sync),
+}
+
 /// A descent of the BVHs of two meshes.
 pub(crate) struct BvhDescent<'a> {
     /// The larger mesh, and the other one.
@@ -31,7 +39,7 @@ pub(crate) struct BvhDescent<'a> {
     /// The other mesh in the frame of the larger one.
     placement12: Placement,
     margin: f32,
-    culling: Option<LateralCulling>,
+    culling: Option<Culling<'a>>,
 }
 
 impl<'a> BvhDescent<'a> {
@@ -40,7 +48,7 @@ impl<'a> BvhDescent<'a> {
         meshes: [&'a MeshView<'a>; 2],
         placement12: Placement,
         margin: f32,
-        culling: Option<LateralCulling>,
+        culling: Option<Culling<'a>>,
     ) -> Self {
         let [mesh1, mesh2] = meshes;
         if mesh1.size_squared() < mesh2.size_squared() {
@@ -80,14 +88,14 @@ impl<'a> BvhDescent<'a> {
         if near.is_empty() {
             return ControlFlow::Continue(());
         }
-        let Self { meshes: [mesh1, mesh2], placement12, margin, culling, .. } = *self;
+        let Self { meshes: [mesh1, mesh2], placement12, margin, .. } = *self;
         let [m1, m2] = [mesh1, mesh2].map(MeshView::magnitude);
         // The margin is a distance in frame 1; quaternions far from unit length scale it.
         let scale = placement12.rotation.x_axis.length();
         let margin2 = ((f64::from(margin) / scale) as f32).next_up();
         let in_frame2 = BoxTest::new([m2, m1], &placement12.inverted(), margin2);
         let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
-        let test = LeafTest::new(&frame).with_culling(culling);
+        let test = LeafTest::new(&frame);
         let tested = Cell::new(0);
         let meets = |near: &NearBox<'_>, node: TestedBox| {
             tested.set(tested.get() + 1);
@@ -116,15 +124,22 @@ impl<'a> BvhDescent<'a> {
         meets: impl Fn(TestedBox) -> bool,
         found: &mut impl FnMut([u32; 2]) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let [mesh1, mesh2] = self.meshes;
+        let Self { meshes: [mesh1, mesh2], culling, is_swapped, .. } = *self;
+        let lateral = culling.as_ref().map(|culling| &culling.lateral);
         let batch1 = LeafBatch::gather(triangles, |triangle| mesh1.corners(triangle));
         let mut decide = |near2: &[u32]| {
             let batch2 = LeafBatch::gather(near2, |triangle| mesh2.corners(triangle));
             let mut flow = ControlFlow::Continue(());
-            test.survivors(&batch1, &batch2, |lane1, lane2| {
+            let lists = [triangles, near2];
+            let may_reject = |i: usize, lane: usize| {
+                let may_reject =
+                    |of: Culling<'_>| (of.may_reject)(i ^ usize::from(is_swapped), lists[i][lane]);
+                culling.is_some_and(may_reject)
+            };
+            test.survivors_in_front(lateral, &batch1, &batch2, may_reject, |lane1, lane2| {
                 if flow.is_continue() {
                     let [one, two] = [triangles[lane1], near2[lane2]];
-                    flow = found(if self.is_swapped { [two, one] } else { [one, two] });
+                    flow = found(if is_swapped { [two, one] } else { [one, two] });
                 }
             });
             flow

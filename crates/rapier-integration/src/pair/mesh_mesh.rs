@@ -13,12 +13,12 @@ use sbbk_core::traverse::{
 use sbbk_core::tree::Tree;
 use sbbk_core::volumes::Sphere;
 
-use super::bvh_descent::BvhDescent;
+use super::bvh_descent::{BvhDescent, Culling};
 use super::chunks::{has_threads, in_chunks};
 use super::far::are_few;
 use super::pose::PairPose;
 use super::query::{Moving, Pair};
-use super::ranges::{filter_distance, filter_unit, lateral_culling, reach};
+use super::ranges::{bends_little, filter_distance, filter_unit, lateral_culling, reach};
 use super::reduce::PatchPlan;
 use super::state::Candidate;
 use super::triangle_contacts::in_local;
@@ -239,7 +239,7 @@ impl Meshes<'_> {
         let MeshPair { pose, .. } = self.pair;
         let mut frame = PairFrame::new(trees, pose.placement12, margin);
         let culling = lateral_culling(self, pose, margin);
-        let test = LeafTest::new(&frame).with_culling(culling);
+        let test = LeafTest::new(&frame);
         let doubles = self.doubles();
         let count = if has_threads() { STARTS } else { 1 };
         begin_descent(trees, &mut frame, count, start, &mut descent.counts);
@@ -248,19 +248,25 @@ impl Meshes<'_> {
             let DescentChunk { found, counts, stack } = chunk;
             let frame = &mut frame.clone();
             descend_from(start, trees, frame, stack, counts, |batch1, batch2| {
-                test.survivors(batch1, batch2, |lane1, lane2| {
-                    let pair = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
+                let triangles = [batch1.triangles(), batch2.triangles()];
+                let bends_little = |i: usize, lane: usize| self.bends_little(i, triangles[i][lane]);
+                let found = |lane1: usize, lane2: usize| {
+                    let pair = [triangles[0][lane1], triangles[1][lane2]];
                     if !has_double(&doubles, pair) {
                         found.push(Candidate::new(pair));
                     }
-                });
+                };
+                let lateral = culling.as_ref();
+                test.survivors_in_front(lateral, batch1, batch2, bends_little, found);
             });
         });
     }
 
     fn descend_bvhs(&self, margin: Real, near: &mut Vec<u32>, descent: &mut DescentChunk) {
         let MeshPair { pose, meshes, .. } = self.pair;
+        let bends_little = |i: usize, triangle: u32| self.bends_little(i, triangle);
         let culling = lateral_culling(self, pose, margin);
+        let culling = culling.map(|lateral| Culling { lateral, may_reject: &bends_little });
         let search = BvhDescent::new(meshes.each_ref(), pose.placement12, margin, culling);
         search.list_near(near, &mut descent.counts);
         let doubles = self.doubles();
@@ -276,6 +282,10 @@ impl Meshes<'_> {
             });
         });
         self.store.count_walk();
+    }
+
+    fn bends_little(&self, i: usize, triangle: u32) -> bool {
+        self.surfaces[i].as_ref().is_some_and(|surface| bends_little(&surface.facets(), triangle))
     }
 
     /// Returns the surfaces that are known by now and have doubles. A descent may leave these out, as they have no contacts.

@@ -2,6 +2,7 @@
 
 use parry3d::math::Real;
 use sbbk_core::leaf::LateralCulling;
+use sbbk_core::surface::Facets;
 
 use super::pose::PairPose;
 use super::reduce::FILTERED;
@@ -47,8 +48,8 @@ pub(super) fn near(shapes: &impl TriangleShapes, pose: &PairPose) -> f64 {
     filter_unit(pose, shapes.filter_distance())
 }
 
-/// Returns a test for pairs of triangles that a descent within `margin` finds and that only
-/// [pass by](super::surface::SurfaceFilter) while its candidates serve.
+/// Returns a test for pairs of triangles that a descent within `margin` finds and that are no local minima while its candidates
+/// serve, unless a triangle [bends much](bends_little).
 pub(super) fn lateral_culling(
     shapes: &impl TriangleShapes,
     pose: &PairPose,
@@ -60,4 +61,10 @@ pub(super) fn lateral_culling(
         let (distance, travel) = ((DISTANT * near(shapes, pose)) as Real, margin - reach);
         LateralCulling::new(distance, NEAR_NORMAL as Real, reach, travel)
     })
+}
+
+/// Returns true if a contact that leans from the normal of a triangle as much as
+/// [lateral culling](lateral_culling) asks for is no local minimum.
+pub(super) fn bends_little(facets: &impl Facets, triangle: u32) -> bool {
+    facets.cones(triangle).least_square(false) >= NEAR_NORMAL * NEAR_NORMAL
 }

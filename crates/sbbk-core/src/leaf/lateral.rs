@@ -1,7 +1,7 @@
 //! Lateral culling: rejects triangles that lie beside each other instead of over each other.
 //!
-//! The nearest points of two small triangles of bodies that face each other are mostly aslant. A
-//! caller that drops such contacts is spared their exact test.
+//! The nearest points of two small triangles of bodies that face each other are mostly aslant. They are no local minima where
+//! the surface bends less ([`NormalCones`](crate::surface::NormalCones)), and need no exact test.
 //!
 //! Let `n` be the normal of a triangle, `m` the direction in its plane away from one of its edges,
 //! and `g` the least distance of the other triangle beyond that edge. Let `h` be the greatest
@@ -43,8 +43,8 @@ const FINE: f32 = 8.0;
 /// Squared lengths of products below this are underflow.
 const TINY: f32 = 1.0e-30;
 
-/// Pairs of triangles to reject: the nearest points lie on no face, are farther apart than a
-/// distance, and lean from the normal of one triangle by more than an angle.
+/// Pairs of triangles that may be rejected. The nearest points lie on no face and are farther apart than a distance. The way
+/// between them leans from the normal of one triangle by more than an angle.
 #[derive(Copy, Clone, Debug)]
 pub struct LateralCulling {
     distance: f32,
@@ -55,7 +55,7 @@ pub struct LateralCulling {
 }
 
 impl LateralCulling {
-    /// Rejects pairs farther apart than `distance` that lean by more than the angle with this
+    /// Finds pairs farther apart than `distance` that lean by more than the angle with this
     /// `cosine`, between 0.5 and 0.9.
     ///
     /// Holds while the shapes move by up to `travel`, for pairs no farther apart than `reach`. The
@@ -70,25 +70,19 @@ impl LateralCulling {
             longest: FINE * reach,
         }
     }
-}
 
-/// The lanes whose triangles are rejected.
-#[inline(always)]
-pub(super) fn is_lateral(
-    culling: &LateralCulling,
-    frame: &LeafFrame,
-    one: &Corners,
-    two: &Corners,
-) -> f32x4 {
-    let no = f32x4::splat(0.0).simd_gt(f32x4::splat(0.0));
-    let extent = largest(sub(one.max, one.min));
-    if extent.simd_gt(f32x4::splat(culling.longest)).all() {
-        return no;
+    /// Returns the lanes whose pairs may be rejected, as bits: those that lean from triangle 1, and from triangle 2.
+    #[inline(always)]
+    pub(super) fn beside(&self, frame: &LeafFrame, one: &Corners, two: &Corners) -> [u32; 2] {
+        let extent = largest(sub(one.max, one.min));
+        if extent.simd_gt(f32x4::splat(self.longest)).all() {
+            return [0; 2];
+        }
+        let [one, two] = from_corner(one, two);
+        let [weak1, strong1] = one_side(self, frame.rounding, &one, &two);
+        let [weak2, strong2] = one_side(self, frame.rounding, &two, &one);
+        [strong1 & weak2, weak1 & strong2].map(|lanes| lanes.to_bitmask())
     }
-    let [one, two] = from_corner(one, two);
-    let [weak1, strong1] = one_side(culling, frame.rounding, &one, &two);
-    let [weak2, strong2] = one_side(culling, frame.rounding, &two, &one);
-    (weak1 & strong2) | (strong1 & weak2)
 }
 
 /// The lanes where the nearest point is not in the face of `own`, and the lanes where it also is

@@ -11,38 +11,32 @@ mod separation;
 pub use lateral::LateralCulling;
 pub(crate) use placed::PlacedTest;
 
+use std::cell::Cell;
+
 use wide::f32x4;
 
 use crate::simd::{V3, bits, each};
 use crate::traverse::PairFrame;
 use crate::tree::LeafBatch;
-use lateral::is_lateral;
 use separation::{Corners, LeafFrame, apart, apart_by_centroids};
 
 /// Tests pairs of leaves at one pose. Made once a query.
 #[derive(Copy, Clone)]
 pub struct LeafTest {
     frame: LeafFrame,
-    lateral: Option<LateralCulling>,
 }
 
 impl LeafTest {
     /// A test at the pose and margin of `frame`.
     pub fn new(frame: &PairFrame) -> Self {
-        Self { frame: LeafFrame::new(frame), lateral: None }
+        Self { frame: LeafFrame::new(frame) }
     }
 
     /// Replaces the margin.
     #[inline]
     #[must_use]
     pub fn within(&self, margin: f32) -> Self {
-        Self { frame: self.frame.within(margin), ..*self }
-    }
-
-    /// Also rejects pairs by lateral culling.
-    #[must_use]
-    pub fn with_culling(self, lateral: Option<LateralCulling>) -> Self {
-        Self { lateral, ..self }
+        Self { frame: self.frame.within(margin) }
     }
 
     /// Calls `found(lane1, lane2)` for the pairs of triangles that no axis separates by more than
@@ -54,14 +48,33 @@ impl LeafTest {
         batch2: &LeafBatch,
         found: impl FnMut(usize, usize),
     ) {
-        let Some(lateral) = &self.lateral else {
-            return self.not_apart(batch1, batch2, apart, found);
-        };
+        self.not_apart(batch1, batch2, apart, found);
+    }
+
+    /// Like [`survivors`](Self::survivors). With `lateral`, leaves out pairs whose nearest points are beside one of the
+    /// triangles, if `may_reject` is true for that triangle of leaf 1 (0) or 2 (1), which a lane names.
+    #[inline]
+    pub fn survivors_in_front(
+        &self,
+        lateral: Option<&LateralCulling>,
+        batch1: &LeafBatch,
+        batch2: &LeafBatch,
+        may_reject: impl Fn(usize, usize) -> bool,
+        mut found: impl FnMut(usize, usize),
+    ) {
+        let Some(lateral) = lateral else { return self.survivors(batch1, batch2, found) };
+        let beside = Cell::new([0; 2]);
         let test = |frame: &LeafFrame, one: &Corners, two: &Corners| {
             let apart = apart(frame, one, two);
-            if apart.all() { apart } else { apart | is_lateral(lateral, frame, one, two) }
+            beside.set(if apart.all() { [0; 2] } else { lateral.beside(frame, one, two) });
+            apart
         };
-        self.not_apart(batch1, batch2, test, found);
+        self.not_apart(batch1, batch2, test, |lane1, lane2| {
+            let [beside1, beside2] = beside.get().map(|lanes| lanes >> lane2 & 1 == 1);
+            if !(beside1 && may_reject(0, lane1) || beside2 && may_reject(1, lane2)) {
+                found(lane1, lane2);
+            }
+        });
     }
 
     /// Like [`survivors`](Self::survivors), with one more axis for triangles that may be far apart

@@ -37,13 +37,13 @@ impl Pair {
         Self { corners: [one, two], pose, far }
     }
 
-    fn is_found(&self, travel: f32, culling: Option<LateralCulling>) -> bool {
+    fn is_found(&self, travel: f32, culling: Option<&LateralCulling>) -> bool {
         let placement = Placement::new(&self.pose);
         let frame: PairFrame = PairFrame::within([self.far + 1.0; 2], placement, REACH + travel);
-        let test = LeafTest::new(&frame).with_culling(culling);
+        let test = LeafTest::new(&frame);
         let [one, two] = self.corners.map(|corners| LeafBatch::gather(&[0], |_| corners));
         let mut is_found = false;
-        test.survivors(&one, &two, |_, _| is_found = true);
+        test.survivors_in_front(culling, &one, &two, |_, _| true, |_, _| is_found = true);
         is_found
     }
 
@@ -90,7 +90,7 @@ fn check(
         let travel = [0.0, 0.1, 0.5][i % 3] * REACH;
         let beside = LateralCulling::new(DISTANCE, COSINE, REACH, travel);
         let pair = Pair::new(random, far_and_thin, &round);
-        let is_found = pair.is_found(travel, Some(beside));
+        let is_found = pair.is_found(travel, Some(&beside));
         if is_found || !pair.is_found(travel, None) {
             continue;
         }

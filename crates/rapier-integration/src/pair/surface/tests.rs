@@ -13,7 +13,7 @@ use crate::pair::mesh_mesh::MeshPair;
 use crate::pair::query::Pair;
 use crate::pair::triangle_shapes::DescentMemory;
 
-/// Rough balls with triangles as large as the prediction distance, apart and crossing. Would
+/// Balls with triangles as large as the prediction distance, apart and crossing. Would
 /// catch contacts that [`lateral_culling`] loses.
 #[test]
 fn triangles_beside_each_other_pass_by() {
@@ -21,7 +21,7 @@ fn triangles_beside_each_other_pass_by() {
     let shapes = [20, 30].map(|rows| {
         let (mut vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
         for (i, vertex) in (0_u32..).zip(&mut vertices) {
-            *vertex *= 1.0 + 0.002 * (i * i % 31) as Real;
+            *vertex *= 1.0 + 0.0001 * (i * i % 31) as Real;
         }
         SharedShape::new(TriMesh::new(vertices, triangles).unwrap())
     });
@@ -54,13 +54,14 @@ fn triangles_beside_each_other_pass_by() {
                 let contact = contact(t1, t2, f64::from(pose.prediction));
                 let Some(contact) = contact else { continue };
                 let filter = SurfaceFilter { shapes: &shapes, pose: &pose, pair, may_pass: true };
-                let passes_by = filter.passes_by(&local, &contact);
+                let may_be_left_out =
+                    filter.passes_by(&local, &contact) && !filter.is_local_minimum(&contact);
                 let is_found = found.binary_search(&pair).is_ok();
-                assert!(is_found || passes_by, "{pair:?}, {contact:?}");
+                assert!(is_found || may_be_left_out, "{pair:?}, {contact:?}");
                 counts[usize::from(is_found)] += 1;
             }
             drop(registered);
         }
     }
-    assert!(counts.into_iter().all(|count| count > 500), "{counts:?}");
+    assert!(counts.into_iter().all(|count| count > 100), "{counts:?}");
 }
