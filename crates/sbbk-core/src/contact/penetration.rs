@@ -104,24 +104,22 @@ impl<'t> Outward<'t> {
         most: f64,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
     ) -> Option<OutwardAxis> {
-        if self.are_cones_apart(cones) {
-            return None;
-        }
         let mut axes = ArrayVec::<OutwardAxis, 22>::new();
-        self.for_each(|direction, heights| {
+        let mut add = |direction: DVec3, heights: [f64; 2]| {
             let square = direction.length_squared();
             // Before the division: most directions end here.
-            if (0..2).any(|i| heights[i] * heights[i] < cones[i] * square) {
-                return;
+            if (0..2).all(|i| heights[i] * heights[i] >= cones[i] * square) {
+                axes.extend(Some(self.axis(direction)).filter(|(gap, _)| *gap >= -most));
             }
-            axes.extend(Some(self.axis(direction)).filter(|(gap, _)| *gap >= -most));
-        });
+        };
+        if !self.are_cones_apart(cones) {
+            self.for_each(&mut add);
+        }
         axes.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
-        let is_end = |(_, axis): &OutwardAxis| {
+        axes.into_iter().find(|(_, axis)| {
             let ways = [*axis, -*axis];
             (0..2).all(|i| is_extremal(i, farthest(&self.triangles[i], ways[i]), ways[i]))
-        };
-        axes.into_iter().find(is_end)
+        })
     }
 
     /// Returns the outward axis of least overlap.

@@ -1,12 +1,14 @@
 //! Tests of directions at a point of a surface against the triangles around that point.
 
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
+use arrayvec::ArrayVec;
 use glamx::DVec3;
 
 use super::cones::NormalCones;
 use super::sides::Side;
-use super::slopes::{Bend, FLAT, Heights, LONG, PlaceMemo, Slopes};
+use super::slopes::{Bend, FLAT, Heights, LONG, PlaceMemo, Signs, Slopes, angle};
 use super::triangle::{area_vector, seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
@@ -93,7 +95,7 @@ impl<F: Facets> Around<F> {
         }
         let mut slopes = Slopes::default();
         let mut bend = Bend::from(normal);
-        let (mut count, mut height) = (0, 0.0);
+        let (mut count, mut signs) = (0, Signs::default());
         self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
             for (edge, is_new) in [(u, are_new[0]), (v, are_new[1])] {
                 if is_new {
@@ -102,7 +104,7 @@ impl<F: Facets> Around<F> {
                 }
             }
             if self.is_solid() {
-                height += u.cross(v).dot(direction);
+                signs.add(u.cross(v).dot(direction));
             }
             count += 1;
             let is_over = slopes.rise > most * most || count > LONG;
@@ -113,7 +115,7 @@ impl<F: Facets> Around<F> {
             return false;
         }
         if !is_long && self.facets.is_whole(triangle, feature) {
-            return height >= 0.0;
+            return !self.leads_in(triangle, feature, direction, &signs);
         }
         let place = contact.map(|(place, _)| place);
         let slopes = self.all_slopes(triangle, feature, direction, place);
@@ -188,16 +190,28 @@ impl<F: Facets> Around<F> {
             let (height, is_upright) = self.over_face(triangle, direction);
             return is_upright && height < 0.0;
         }
-        let (mut count, mut height) = (0, 0.0);
+        let (mut count, mut signs) = (0, Signs::default());
         let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
-            height += u.cross(v).dot(direction);
+            signs.add(u.cross(v).dot(direction));
             count += 1;
             if count > LONG { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         if count > LONG || !is_closed && !self.facets.is_whole(triangle, feature) {
-            height = self.all_slopes(triangle, feature, direction, None).height;
+            return self.all_slopes(triangle, feature, direction, None).height < 0.0;
         }
-        height < 0.0
+        self.leads_in(triangle, feature, direction, &signs)
+    }
+
+    /// Returns true if a direction leads into the solid, by its heights over the triangles of a one-ring.
+    fn leads_in(&self, triangle: u32, feature: Feature, direction: DVec3, signs: &Signs) -> bool {
+        signs.lead_in().unwrap_or_else(|| {
+            let mut heights = Heights::default();
+            self.visit(triangle, feature, |wedge| {
+                heights.add(wedge.area(), wedge.angle(feature), direction);
+                ControlFlow::Continue(())
+            });
+            heights.sum() < 0.0
+        })
     }
 
     /// Returns the first triangle of a vertex's one-ring, and a number of the ring. Sums in the order of a ring that
@@ -250,11 +264,10 @@ impl<F: Facets> Around<F> {
     ) -> (Slopes, usize) {
         let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
         let (mut count, mut area) = (0, DVec3::ZERO);
-        let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
-            slopes.add(u, direction);
-            slopes.add(v, direction);
-            heights.add(u.cross(v), direction);
-            area += u.cross(v);
+        let is_closed = self.visit(triangle, feature, |wedge| {
+            wedge.edges.into_iter().for_each(|edge| slopes.add(edge, direction));
+            heights.add(wedge.area(), wedge.angle(feature), direction);
+            area += wedge.area();
             count += 1;
             ControlFlow::Continue(())
         });
@@ -269,8 +282,10 @@ impl<F: Facets> Around<F> {
         if !self.facets.is_whole(triangle, feature) {
             let mut all = Heights::default();
             self.visit_touching(triangle, place, usize::MAX, |corners, ends| {
-                ends.for_each(|end| slopes.add(end, direction));
-                all.add(area_vector(corners), direction);
+                let ends: ArrayVec<DVec3, 3> = ends.collect();
+                ends.iter().for_each(|end| slopes.add(*end, direction));
+                let angle = if let [u, v] = ends[..] { angle(u, v) } else { PI };
+                all.add(area_vector(corners), angle, direction);
                 count += 1;
             });
             heights = if is_closed { heights } else { all };
@@ -455,6 +470,21 @@ pub(super) struct Wedge {
     pub(super) edges: [DVec3; 2],
     /// True for edges that no earlier triangle of the ring has.
     are_new: [bool; 2],
+}
+
+impl Wedge {
+    /// Normal of the triangle; its length is twice the area.
+    #[inline(always)]
+    fn area(&self) -> DVec3 {
+        let [u, v] = self.edges;
+        u.cross(v)
+    }
+
+    /// Angle of the triangle at the vertex, or at a point of the edge.
+    fn angle(&self, feature: Feature) -> f64 {
+        let [u, v] = self.edges;
+        if let Feature::Vertex(_) = feature { angle(u, v) } else { PI }
+    }
 }
 
 fn half_edge(triangle: u32, feature: Feature) -> u32 {

@@ -23,7 +23,7 @@ pub(super) const LONG: usize = 32;
 pub(super) struct Slopes {
     /// Greatest slope towards the direction, as the square of a sine.
     pub(super) rise: f64,
-    /// Height of the direction along the area vectors of a solid's triangles.
+    /// Height of the direction along the [pseudo-normal](Heights).
     pub(super) height: f64,
     /// The bend of a long one-ring: twice that from its mean plane.
     pub(super) bend: Option<Bend>,
@@ -172,7 +172,9 @@ impl PlaceMemo {
     }
 }
 
-/// Heights of a direction along the area vectors of triangles in any order.
+/// Height of a direction along the pseudo-normal of a point: the sum of the normals there, weighted by angles. Directions to
+/// points that are nearest to that point have a negative height in the solid (Bærentzen and Aanæs, *Signed Distance Computation Using
+/// the Angle Weighted Pseudonormal*, 2005). Areas as weights would fail at acute corners.
 #[derive(Default)]
 pub(super) struct Heights {
     sum: f64,
@@ -183,12 +185,38 @@ impl Heights {
     /// Share of the terms below which a sum is zero: directions are rounded.
     const ROUNDING: f64 = 1.0e-8;
 
-    pub(super) fn add(&mut self, area: DVec3, direction: DVec3) {
-        self.sum += area.dot(direction);
-        self.size += area.length();
+    /// Adds a triangle by its area vector, and the angle that the triangle has at the point.
+    pub(super) fn add(&mut self, area: DVec3, angle: f64, direction: DVec3) {
+        self.sum += angle * area.normalize_or_zero().dot(direction);
+        self.size += angle;
     }
 
     pub(super) fn sum(&self) -> f64 {
         if self.sum.abs() <= Self::ROUNDING * self.size { 0.0 } else { self.sum }
+    }
+}
+
+/// Returns the angle between two vectors.
+pub(super) fn angle(u: DVec3, v: DVec3) -> f64 {
+    u.cross(v).length().atan2(u.dot(v))
+}
+
+/// The signs of heights of a direction along the normals of triangles.
+#[derive(Default)]
+pub(super) struct Signs {
+    low: f64,
+    high: f64,
+}
+
+impl Signs {
+    #[inline(always)]
+    pub(super) fn add(&mut self, height: f64) {
+        self.low = self.low.min(height);
+        self.high = self.high.max(height);
+    }
+
+    /// Returns true if the direction leads behind all triangles, false if behind none, else `None`.
+    pub(super) fn lead_in(&self) -> Option<bool> {
+        (self.low >= 0.0 || self.high <= 0.0).then_some(self.low < 0.0)
     }
 }

@@ -168,7 +168,14 @@ fn brute_side(
     direction: DVec3,
 ) -> Option<Seen> {
     let at = |half_edge: usize| corners(mesh, half_edge).map(|corner| corner.as_dvec3());
-    let normal: DVec3 = around.iter().map(|&h| at(h)).map(|[a, b, c]| (b - a).cross(c - a)).sum();
+    let weighted = |[a, b, c]: [DVec3; 3]| {
+        let angle = match feature {
+            Feature::Vertex(_) => (b - a).angle_between(c - a),
+            _ => 1.0,
+        };
+        angle * (b - a).cross(c - a).normalize_or_zero()
+    };
+    let normal: DVec3 = around.iter().map(|&h| at(h)).map(weighted).sum();
     let cosine = normal.normalize_or_zero().dot(direction);
     // The face of a triangle without area is nowhere nearest.
     let is_unsure = if feature == Feature::Face { normal == DVec3::ZERO } else { is_solid };
@@ -249,6 +256,45 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
         }
     }
     assert!(seen.iter().all(|&count| count > 10_000), "{seen:?}");
+}
+
+/// Corners of tetrahedra are acute, and their triangles unlike in size. Would catch a corner that seems to lead into the solid
+/// as one large triangle there faces away.
+#[test]
+fn the_farthest_corners_and_edges_of_tetrahedra_are_minima() {
+    let mut random = Random(43);
+    let mut counts = [0; 2];
+    for _ in 0..2000 {
+        let thin = Vec3::new(1.0, 1.0, random.range(0.02, 1.0));
+        let vertices: Vec<Vec3> = (0..4).map(|_| thin * random.vector(1.0)).collect();
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| vertices[i]);
+        let is_left = (b - a).cross(c - a).dot(d - a) > 0.0;
+        let [i, j] = if is_left { [1, 2] } else { [2, 1] };
+        let triangles = vec![[0, j, i], [0, i, 3], [i, j, 3], [j, 0, 3]];
+        let mesh = Soup { vertices, triangles };
+        let surface = mesh.surface();
+        let around = Around { facets: mesh.facets(&surface), side: Side::Outer };
+        for half_edge in 0..12_u32 {
+            let (triangle, i) = (half_edge / 3, (half_edge % 3) as u8);
+            let [start, end, _] = corners(&mesh, half_edge as usize).map(|at| at.as_dvec3());
+            let mut direction = random.vector(1.0).as_dvec3();
+            let is_edge = random.bits().is_multiple_of(2);
+            let feature = if is_edge {
+                direction = direction.reject_from(end - start);
+                Feature::Edge(i)
+            } else {
+                Feature::Vertex(i)
+            };
+            let direction = direction.normalize();
+            let height = |at: &Vec3| direction.dot(at.as_dvec3() - start);
+            if mesh.vertices.iter().all(|at| height(at) <= 1e-9) {
+                let found = side(&around, triangle, feature, direction);
+                assert_eq!(found, Seen::Front, "{triangle} {feature:?} {direction}");
+                counts[usize::from(is_edge)] += 1;
+            }
+        }
+    }
+    assert!(counts.iter().all(|&count| count > 1000), "{counts:?}");
 }
 
 /// The cube leans on an edge, and a corner leads down.
