@@ -1,3 +1,4 @@
+use arrayvec::ArrayVec;
 use glamx::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use sbbk_core::collections::UnionFind;
@@ -16,6 +17,10 @@ pub(crate) struct OverlapIslands {
     rejected: FxHashSet<[u32; 2]>,
     /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
     deepest: Vec<(DVec3, f64)>,
+    /// Pairs that no reliable contact of their island would separate. They form islands of their own.
+    unserved: FxHashSet<[u32; 2]>,
+    /// Normals of the reliable contacts of each island, one for each direction, and how far these push the shapes.
+    ways: FxHashMap<Node, ArrayVec<(DVec3, f64), MOST_DIRECTIONS>>,
     /// Triangles of each island.
     islands: UnionFind<Node>,
     /// Support of each island, by its representative triangle.
@@ -66,8 +71,15 @@ impl Support {
     }
 }
 
-/// A triangle of mesh 1 (0) or 2 (1).
+/// A triangle of mesh 1 (0) or 2 (1), or of mesh 1 (2) or 2 (3) in an unserved pair.
 type Node = (usize, u32);
+
+/// Overlap of two triangles along a direction.
+pub(super) struct Overlap {
+    pub(super) length: f64,
+    /// True if the direction leads out of a face of one of the triangles, rather than along it.
+    pub(super) leads_out: bool,
+}
 
 /// A crossing of an island that has too few contacts.
 pub(super) struct Unsupported {
@@ -154,12 +166,17 @@ pub(super) const SAME_SIDE: f64 = 0.5;
 /// many others cross takes longer; lower: directions that push against each other are confused.
 const SAME_DIRECTION: f64 = 0.99;
 
+/// Directions of reliable contacts that are remembered for an island. Higher: slower where many differ. Lower: second
+/// passes for pairs that a contact separates.
+const MOST_DIRECTIONS: usize = 16;
+
 impl OverlapIslands {
     /// Begins the first pass of a query.
     pub(super) fn clear(&mut self) {
         self.crossings.clear();
         self.touching.clear();
         self.rejected.clear();
+        self.unserved.clear();
         self.separation = None;
     }
 
@@ -198,8 +215,13 @@ impl OverlapIslands {
     }
 
     /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
-    /// the wrong way. `separation`: direction in which mesh 2 separates, if known.
-    pub(super) fn finish_first_pass(&mut self, separation: Option<DVec3>) -> bool {
+    /// the wrong way. `separation`: direction in which mesh 2 separates, if known. `overlap` returns the overlap
+    /// of two triangles along a direction.
+    pub(super) fn finish_first_pass(
+        &mut self,
+        separation: Option<DVec3>,
+        overlap: impl Fn([u32; 2], DVec3) -> Overlap,
+    ) -> bool {
         self.reject_far_sides();
         self.separation = separation;
         let is_against = |crossing: &&Crossing| {
@@ -214,9 +236,10 @@ impl OverlapIslands {
         if !has_both_sides && self.crossings.iter().all(|crossing| self.is_fine(crossing)) {
             return false;
         }
-        self.islands.clear();
-        for &Crossing { pair: [triangle1, triangle2], .. } in &self.crossings {
-            self.islands.join((0, triangle1), (1, triangle2));
+        self.join();
+        self.find_unserved(overlap);
+        if !self.unserved.is_empty() {
+            self.join();
         }
         self.sum_support();
         let has_sheet = self.crossings.iter().any(|crossing| crossing.sheet.is_some());
@@ -224,6 +247,54 @@ impl OverlapIslands {
             self.sum_support();
         }
         !self.rejected.is_empty() || self.support.values().any(|support| !support.is_enough())
+    }
+
+    /// Joins the triangles of crossings to islands.
+    fn join(&mut self) {
+        self.islands.clear();
+        for Crossing { pair, .. } in &self.crossings {
+            let [node1, node2] = self.nodes(*pair);
+            self.islands.join(node1, node2);
+        }
+    }
+
+    /// Finds the pairs that no reliable contact of their island separates. A contact with a floor does not part a body from a
+    /// wall, though one triangle of the body may cross both.
+    fn find_unserved(&mut self, overlap: impl Fn([u32; 2], DVec3) -> Overlap) {
+        let Self { crossings, rejected, unserved, ways, islands, .. } = self;
+        ways.clear();
+        let is_fine = |one: &Crossing| one.is_reliable && !rejected.contains(&one.pair);
+        for Crossing { pair, normal, greatest, .. } in crossings.iter().filter(|one| is_fine(one)) {
+            let known = ways.entry(islands.first((0, pair[0]))).or_default();
+            if known.iter().all(|(way, _)| way.dot(*normal) < SAME_DIRECTION) {
+                // Pairs that need a way beyond the limit get a closer look.
+                let _ = known.try_push((*normal, *greatest));
+            }
+        }
+        for Crossing { pair, .. } in &*crossings {
+            for (way, length) in ways.get_mut(&islands.first((0, pair[0]))).into_iter().flatten() {
+                let overlap = overlap(*pair, *way);
+                *length = length.max(if overlap.leads_out { overlap.length } else { 0.0 });
+            }
+        }
+        for Crossing { pair, .. } in crossings.iter().filter(|one| !is_fine(one)) {
+            let Some(known) = ways.get(&islands.first((0, pair[0]))) else { continue };
+            if known.iter().all(|(way, length)| overlap(*pair, *way).length > *length) {
+                unserved.insert(*pair);
+            }
+        }
+    }
+
+    /// Returns the triangles of a pair by which islands are joined.
+    fn nodes(&self, pair: [u32; 2]) -> [Node; 2] {
+        let first = 2 * usize::from(self.unserved.contains(&pair));
+        [(first, pair[0]), (first + 1, pair[1])]
+    }
+
+    /// Returns the triangle that stands for the island of a pair.
+    fn island(&mut self, pair: [u32; 2]) -> Node {
+        let [node, _] = self.nodes(pair);
+        self.islands.first(node)
     }
 
     /// Returns true if a second pass does not change the contact of a pair.
@@ -257,7 +328,7 @@ impl OverlapIslands {
             let Some(outward) = crossing.outward_signs().filter(|_| is_crossing) else { continue };
             if self.needs_support(pair) {
                 list.push(Unsupported {
-                    island: self.islands.first((0, pair[0])),
+                    island: self.island(pair),
                     pair,
                     has_contact: self.is_fine(&crossing),
                     outward,
@@ -270,7 +341,7 @@ impl OverlapIslands {
 
     /// Sets the way out of the overlap of an island.
     pub(super) fn set_way(&mut self, pair: [u32; 2], way: IslandWay) {
-        let first = self.islands.first((0, pair[0]));
+        let first = self.island(pair);
         self.support.entry(first).or_default().way = Some(way);
     }
 
@@ -329,7 +400,8 @@ impl OverlapIslands {
         self.support.clear();
         for crossing in &self.crossings {
             let is_fine = self.is_fine(crossing);
-            let first = self.islands.first((0, crossing.pair[0]));
+            let [node, _] = self.nodes(crossing.pair);
+            let first = self.islands.first(node);
             let support = self.support.entry(first).or_default();
             support.pairs += 1;
             support.reliable += u32::from(is_fine);
@@ -349,7 +421,8 @@ impl OverlapIslands {
     fn reject_sides_of_sheets(&mut self) -> bool {
         let before = self.rejected.len();
         for crossing in &self.crossings {
-            let first = self.islands.first((0, crossing.pair[0]));
+            let [node, _] = self.nodes(crossing.pair);
+            let first = self.islands.first(node);
             let is_doubtful =
                 |support: &&Support| support.sides == [true; 2] || !support.is_enough();
             let side = self.support.get(&first).filter(is_doubtful).map(|of| of.sheet_side);
@@ -362,8 +435,8 @@ impl OverlapIslands {
     }
 
     /// Returns the support of the island of a pair.
-    fn support_of(&mut self, [triangle1, _]: [u32; 2]) -> Option<Support> {
-        let first = self.islands.first((0, triangle1));
+    fn support_of(&mut self, pair: [u32; 2]) -> Option<Support> {
+        let first = self.island(pair);
         self.support.get(&first).copied()
     }
 }

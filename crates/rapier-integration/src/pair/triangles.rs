@@ -7,6 +7,7 @@
 use std::cell::Cell;
 use std::thread::LocalKey;
 
+use glamx::DVec3;
 use parry3d::math::Real;
 use sbbk_core::contact::{
     ManifoldPoints, TriangleContact, clip, contact, contact_from, push_closest,
@@ -18,7 +19,7 @@ use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
 use super::deep::{self, ContourMemory};
 use super::far::{Directions, FarSearch};
-use super::islands::{Crossing, OverlapIslands};
+use super::islands::{Crossing, Overlap, OverlapIslands};
 use super::passed::PassedTriangles;
 use super::pose::PairPose;
 use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery};
@@ -40,6 +41,10 @@ const LEAST_CANDIDATES: usize = 256;
 
 /// Share of the least distance below which a distance is less. Higher: rounding decides where triangles have equal distances.
 const NEARER: f64 = 0.999;
+
+/// Least cosine between a face and a direction that leads out of it rather than along it. Higher: deep boxes get contacts with the
+/// sides; lower: bodies in sockets lose contacts.
+const OUT_OF_FACE: f64 = 0.7;
 
 /// A query about two shapes made of triangles.
 pub(crate) struct TriangleQuery<'q, S> {
@@ -148,7 +153,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let FirstPass { islands, clipped, is_near, upright, .. } = first;
         let lead_one_way = meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
-        if islands.finish_first_pass(separation) {
+        if islands.finish_first_pass(separation, |pair, way| self.overlap(pair, way)) {
             self.second_pass(islands, contours, clipped, contacts);
         }
         if limits.reach < f64::from(self.pose.prediction) {
@@ -379,6 +384,22 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         let [t1, t2] = &local.corners;
         let contact = contact(t1, t2, f64::from(self.pose.prediction))?;
         Some((pair, TriangleSurfaceContact { contact, source: ContactSource::Triangles }))
+    }
+
+    /// Returns the overlap of two triangles along a direction in which triangle 2 leaves.
+    fn overlap(&self, pair: [u32; 2], way: DVec3) -> Overlap {
+        let Some(local) = self.shapes.local(self.pose, pair) else {
+            return Overlap { length: 0.0, leads_out: false };
+        };
+        let heights = local.corners.map(|corners| corners.map(|corner| corner.dot(way)));
+        let highest = heights[0].into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let lowest = heights[1].into_iter().fold(f64::INFINITY, f64::min);
+        let leads_out = |[a, b, c]: [DVec3; 3]| {
+            let area = (b - a).cross(c - a);
+            area.dot(way).abs() > OUT_OF_FACE * area.length()
+        };
+        let leads_out = local.corners.into_iter().any(leads_out);
+        Overlap { length: highest - lowest, leads_out }
     }
 
     /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too few.

@@ -17,6 +17,10 @@ fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>)
     }
 }
 
+fn no_overlap(_: [u32; 2], _: DVec3) -> Overlap {
+    Overlap { length: 0.0, leads_out: false }
+}
+
 /// Would catch islands that are not joined through common triangles, and pairs that a second
 /// pass changes without need.
 #[test]
@@ -31,7 +35,7 @@ fn islands_without_a_reliable_contact_need_support() {
         {
             islands.crossings.push(crossing(pair, contact, None));
         }
-        assert!(islands.finish_first_pass(None));
+        assert!(islands.finish_first_pass(None, no_overlap));
         let held = [[1, 1], [1, 2], [3, 2]].map(|pair| islands.needs_support(pair));
         assert_eq!(held, [false; 3]);
         assert!(islands.needs_support([7, 7]) && islands.needs_support([7, 8]));
@@ -41,11 +45,11 @@ fn islands_without_a_reliable_contact_need_support() {
     }
     islands.clear();
     islands.crossings.push(crossing([1, 1], Some(&good), None));
-    assert!(!islands.finish_first_pass(None), "all is good");
+    assert!(!islands.finish_first_pass(None, no_overlap), "all is good");
     islands.clear();
     islands.crossings.push(crossing([1, 1], None, None));
     islands.crossings.push(crossing([1, 2], Some(&good), None));
-    assert!(!islands.finish_first_pass(None), "the island is held");
+    assert!(!islands.finish_first_pass(None, no_overlap), "the island is held");
 }
 
 /// Would catch a thin body that is pushed both ways, whichever of the two meshes it is.
@@ -55,7 +59,7 @@ fn of_two_sides_of_a_thin_body_the_nearer_one_counts() {
         let mut islands = OverlapIslands::default();
         islands.crossings.push(crossing(pair(5, 1), Some(&(DVec3::Y, 0.1)), None));
         islands.crossings.push(crossing(pair(5, 2), Some(&(-DVec3::Y, 0.3)), None));
-        assert!(islands.finish_first_pass(None));
+        assert!(islands.finish_first_pass(None, no_overlap));
         assert!(islands.is_final(pair(5, 1)) && !islands.is_final(pair(5, 2)));
     }
 }
@@ -70,7 +74,7 @@ fn one_contact_does_not_support_a_large_island() {
         for i in 0..pairs {
             islands.crossings.push(crossing([1, i], Some(&good).filter(|_| i < contacts), None));
         }
-        let needs_more = islands.finish_first_pass(None);
+        let needs_more = islands.finish_first_pass(None, no_overlap);
         assert_eq!(
             needs_more,
             islands.support.get(&(0, 1)).is_some_and(|support| !support.is_enough())
@@ -100,7 +104,7 @@ fn of_contacts_both_ways_those_along_the_way_stay() {
     assert!(!islands(&[]).is_undecided());
     let mut both = islands(&[DVec3::Y, -DVec3::Y, aslant]);
     assert!(both.is_undecided() && both.separation.is_none());
-    assert!(both.finish_first_pass(Some(DVec3::Y)) && both.separation.is_some());
+    assert!(both.finish_first_pass(Some(DVec3::Y), no_overlap) && both.separation.is_some());
     assert_eq!([1, 2, 3].map(|i| both.is_final([i, i])), [true, false, true]);
     assert!(both.needs_support([2, 2]) && !both.agrees([2, 2])(-DVec3::Y));
     assert!(both.agrees([2, 2])(DVec3::X) && both.agrees([2, 2])(aslant));
@@ -117,7 +121,9 @@ fn of_two_sides_that_push_against_each_other_the_nearer_one_stays() {
         let leaning = DVec3::new(lean.sin(), -lean.cos(), 0.0);
         islands.crossings.push(crossing([1, 1], Some(&(DVec3::Y, up)), None));
         islands.crossings.push(crossing([1, 2], Some(&(leaning, down)), None));
-        islands.finish_first_pass(None).then(|| [[1, 1], [1, 2]].map(|pair| islands.is_final(pair)))
+        islands
+            .finish_first_pass(None, no_overlap)
+            .then(|| [[1, 1], [1, 2]].map(|pair| islands.is_final(pair)))
     };
     assert_eq!(both(0.1, 0.3, 0.0), Some([true, false]));
     assert_eq!(both(0.3, 0.1, 0.5), Some([false, true]));
@@ -138,7 +144,7 @@ fn an_island_pushed_to_both_sides_of_a_sheet_keeps_one() {
         // Far from these, all the same way.
         let sheet = Some(SheetSide { shape: Some(0), away: DVec3::Y, height: 1.0 });
         islands.crossings.push(crossing([7, 7], Some(&(-DVec3::Y, 0.1)), sheet));
-        islands.finish_first_pass(None);
+        islands.finish_first_pass(None, no_overlap);
         [[1, 1], [2, 1], [7, 7]].map(|pair| islands.is_final(pair))
     };
     let both = [DVec3::Y, -DVec3::Y];
@@ -162,7 +168,7 @@ fn few_contacts_do_not_push_through_a_sheet() {
                 Some(SheetSide { shape: Some(0), away: DVec3::Y, height }),
             ));
         }
-        let needs_more = islands.finish_first_pass(None);
+        let needs_more = islands.finish_first_pass(None, no_overlap);
         (needs_more && islands.needs_support([1, 0]), islands.is_final([1, 0]), islands)
     };
     let (is_lost, is_final, mut islands) = finish(0.01, SUPPORTED + 1);
