@@ -59,14 +59,14 @@ impl Surface {
             twins::find(vertices, triangles);
         let is_closed = is_closed && triangles.len() <= PAIRED;
         let memo = &PlaceMemo::default();
-        let mesh = sides::RayMesh { triangles: rays, open: open.as_ref(), memo };
+        let mesh = sides::RayMesh::new(rays, open.as_ref(), memo, sides::WORK_OF_MESH);
         let kind = sides::of_samples(&mesh, is_closed);
         Self { twins, hubs, has_small_components, open, doubles, kind }
     }
 
     /// Finds the side of a triangle as [`side`](side()) does. Takes less time, as rays count closed components as they are.
     pub fn side(&self, triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-        sides::RayMesh { triangles, open: self.open.as_ref(), memo }.side(triangle)
+        sides::RayMesh::new(triangles, self.open.as_ref(), memo, sides::WORK_OF_SIDE).side(triangle)
     }
 
     /// True if an earlier triangle has the same corners, in either winding. The earlier triangle has its contacts.

@@ -7,7 +7,7 @@
 //! Source: Jacobson, Kavan, Sorkine-Hornung, *Robust Inside-Outside Segmentation using Generalized
 //! Winding Numbers*, 2013. Their number is the mean over all rays.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
@@ -129,8 +129,21 @@ const TIE: f64 = 1.0e-9;
 
 /// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more.
 pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-    RayMesh { triangles, open: None, memo }.side(triangle)
+    RayMesh::new(triangles, None, memo, WORK_OF_UNKNOWN).side(triangle)
 }
+
+/// Triangles that rays may come near in tests for walls, for the side of one triangle. Beyond that, walls count as faces. Higher:
+/// meshes of open parts in each other are slower. Lower: walls within such meshes have contacts.
+pub(super) const WORK_OF_SIDE: i64 = 4000;
+
+/// The same for a mesh whose closed components are not known.
+const WORK_OF_UNKNOWN: i64 = 100_000;
+
+/// The same for all samples of a mesh.
+pub(super) const WORK_OF_MESH: i64 = 400_000;
+
+/// Work of a ray beside the triangles that it comes near.
+const WORK_OF_RAY: i64 = 16;
 
 /// The triangles of a mesh, with the components and walls that are known.
 pub(super) struct RayMesh<'a, T> {
@@ -139,9 +152,30 @@ pub(super) struct RayMesh<'a, T> {
     pub(super) open: Option<&'a TriangleSet>,
     /// Walls that rays have met.
     pub(super) memo: &'a PlaceMemo,
+    /// Triangles that rays have come near.
+    work: Cell<i64>,
+    /// Work that tests for walls may take.
+    left: Cell<i64>,
+    /// True if others use the memo. Walls that it knows count as if they were not known then, as the side of a triangle must not
+    /// depend on these others.
+    is_shared: bool,
 }
 
-impl<T: RayTriangles> RayMesh<'_, T> {
+impl<'a, T: RayTriangles> RayMesh<'a, T> {
+    pub(super) fn new(
+        triangles: &'a T,
+        open: Option<&'a TriangleSet>,
+        memo: &'a PlaceMemo,
+        most: i64,
+    ) -> Self {
+        let (work, left) = (Cell::new(0), Cell::new(most));
+        Self { triangles, open, memo, work, left, is_shared: most < WORK_OF_MESH }
+    }
+
+    fn is_exhausted(&self) -> bool {
+        self.left.get() < 0
+    }
+
     /// Finds the side of a triangle.
     pub(super) fn side(&self, triangle: u32) -> Side {
         let first = self.sample(triangle, 0);
@@ -188,7 +222,15 @@ impl<T: RayTriangles> RayMesh<'_, T> {
             is_inner_at(middle(&self.triangles.corners(triangle)))
                 && !self.is_partly_outside(triangle, is_inner_at)
         };
-        self.is_of_closed(triangle) || !self.memo.is_wall(triangle, is_wall)
+        if self.is_of_closed(triangle) || self.is_exhausted() {
+            return true;
+        }
+        let before = self.work.get();
+        let find = || (is_wall(), self.work.get() - before);
+        let (is_wall, work) = self.memo.is_wall(triangle, find);
+        let work = if self.is_shared { work } else { self.work.get() - before };
+        self.left.set(self.left.get() - work);
+        !is_wall
     }
 
     /// True if the component of a triangle is known to be closed.
@@ -244,7 +286,7 @@ const CONSIDERED: u32 = 1 << 14;
 /// Classifies a mesh by up to 4096 rays.
 pub fn kind(triangles: &impl RayTriangles) -> SurfaceKind {
     let memo = &PlaceMemo::default();
-    of_samples(&RayMesh { triangles, open: None, memo }, false)
+    of_samples(&RayMesh::new(triangles, None, memo, WORK_OF_MESH), false)
 }
 
 /// Classifies a mesh. `is_closed`: each edge has as many half-edges one way as back, so there are no holes.
@@ -263,16 +305,17 @@ pub(super) fn of_samples(mesh: &RayMesh<impl RayTriangles>, is_closed: bool) -> 
     }
     let mut counts = [0; 4];
     let mut tested = 0;
-    for samples in if is_closed { [VOTES; 3] } else { SAMPLES } {
-        for i in tested..samples {
+    for most in if is_closed { [VOTES; 3] } else { SAMPLES } {
+        let may_go_on = |i: &u32| *i < VOTES || !mesh.is_exhausted();
+        for i in (tested..most).take_while(may_go_on) {
             let place = whole * sequence(f64::from(i), 0);
             let triangle = step * areas.partition_point(|&sum| sum < place) as u32;
             counts[mesh.sample_of_mesh(triangle, i) as usize] += 1;
+            tested = i + 1;
         }
-        tested = samples;
-        let open = f64::from(counts[Side::Sheet as usize]) / f64::from(samples);
-        let doubt = SURE * (HOLES * (1.0 - HOLES) / f64::from(samples)).sqrt();
-        if is_closed || (open - HOLES).abs() > doubt {
+        let open = f64::from(counts[Side::Sheet as usize]) / f64::from(tested);
+        let doubt = SURE * (HOLES * (1.0 - HOLES) / f64::from(tested)).sqrt();
+        if is_closed || (open - HOLES).abs() > doubt || mesh.is_exhausted() {
             break;
         }
     }
@@ -381,7 +424,9 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
 
     fn hits(&self, direction: DVec3) -> Option<Vec<Hit>> {
         let mut hits = Vec::new();
+        let mut work = WORK_OF_RAY;
         self.mesh.triangles.along(self.start, direction, &mut |triangle| {
+            work += 1;
             let corners = self.mesh.triangles.corners(triangle).map(|corner| corner - self.start);
             let hit = hit(&corners, direction).filter(|(length, ..)| *length > self.skipped);
             hits.extend(hit.map(|(length, sign, is_at_border)| Hit {
@@ -392,6 +437,7 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
             }));
             if hits.len() > MOST_HITS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
+        self.mesh.work.set(self.mesh.work.get() + work);
         hits.sort_unstable_by(|a, b| a.length.total_cmp(&b.length));
         (hits.len() <= MOST_HITS).then_some(hits)
     }

@@ -113,7 +113,7 @@ pub struct PlaceMemo {
     rings: Memo<u32, u32>,
     slopes: Memo<(u32, [i64; 6]), Slopes>,
     borders: Memo<(u32, [u64; 3]), bool>,
-    walls: Memo<u32, bool>,
+    walls: Memo<u32, (bool, i64)>,
 }
 
 impl PlaceMemo {
@@ -158,8 +158,8 @@ impl PlaceMemo {
         Memo::answer(memo.map(|memo| &memo.borders), key, find)
     }
 
-    /// Returns true if a triangle is a wall within a body.
-    pub(super) fn is_wall(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
+    /// Returns true if a triangle is a wall within a body, and the work of finding out.
+    pub(super) fn is_wall(&self, triangle: u32, find: impl FnOnce() -> (bool, i64)) -> (bool, i64) {
         Memo::answer(Some(&self.walls), triangle, || (find(), usize::MAX))
     }
 

@@ -165,6 +165,28 @@ fn a_side_takes_as_long_in_a_wide_level_as_in_a_narrow_one() {
     }
 }
 
+/// Boxes without a bottom, each in many others. Would catch searches for walls that are bounded for one ray only.
+#[test]
+fn meshes_of_open_parts_in_each_other_are_analysed_soon() {
+    for count in [100, 400] {
+        let mut random = Random(9);
+        let mut soup = soup(&boxes(&mut random, count, 4, false));
+        let sides = soup.triangles.chunks(12).flat_map(|of_box| &of_box[2..]);
+        soup.triangles = sides.copied().collect();
+        let surface = soup.surface();
+        let counted = Counted { soup, hits: Cell::default() };
+        sbbk_core::surface::kind(&counted);
+        let of_kind = counted.hits.take();
+        let memo = PlaceMemo::default();
+        for triangle in 0..50 {
+            found_side(Some(&surface), &counted, triangle, &memo);
+        }
+        let of_sides = counted.hits.take();
+        println!("{count} boxes: {of_kind} triangles for the kind, {of_sides} for 50 sides");
+        assert!(of_kind < 1_000_000 && of_sides < 5_000_000, "{of_kind} {of_sides}");
+    }
+}
+
 /// Eight slabs with flush tops that overlap by 0.1. Would catch rays that count two flush faces once, and rays that skip a face
 /// near their start.
 #[test]
