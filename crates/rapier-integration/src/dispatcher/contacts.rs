@@ -13,7 +13,8 @@ use super::SbbkDispatcher;
 use crate::TriangleContacts;
 use crate::mesh::{are_near, is_near, may_be_inside};
 use crate::pair::{
-    ConvexPair, FieldPair, MeshPair, MeshPlace, PairPose, Parts, QueryOutcome, update_manifolds,
+    ConvexPair, Field, MeshPair, MeshPlace, PairPose, Parts, QueryOutcome, ShapeView,
+    update_manifolds,
 };
 
 impl SbbkDispatcher {
@@ -45,8 +46,8 @@ impl SbbkDispatcher {
                 if is_new && !are_near(meshes, pos12, prediction) && !may_be_inside() {
                     return Some(QueryOutcome::Apart);
                 }
-                let (meshes, pose) = (self.view(meshes)?, &PairPose::new(pos12, prediction));
-                let pair = MeshPair { pose, meshes, config };
+                let shapes = self.view(meshes)?.map(ShapeView::Mesh);
+                let pair = MeshPair { pose: &PairPose::new(pos12, prediction), shapes, config };
                 return Some(update_manifolds(&pair, store, counts, manifolds, workspace));
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
@@ -55,7 +56,8 @@ impl SbbkDispatcher {
         };
         if let Some(field) = other.as_heightfield().filter(|_| config.kinds.height_fields) {
             let ([mesh], pose) = (self.view([mesh])?, &PairPose::new(pos12, prediction));
-            let pair = FieldPair { pose, mesh, field, mesh_place, config };
+            let shapes = mesh_place.swap([ShapeView::Mesh(mesh), ShapeView::Field(Field(field))]);
+            let pair = MeshPair { pose, shapes, config };
             return Some(update_manifolds(&pair, store, counts, manifolds, workspace));
         }
         let parts = Parts::of(other).filter(|parts| match parts {

@@ -180,7 +180,7 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
 pub(crate) struct MeshView<'a> {
     pub(crate) mesh: &'a TriMesh,
     pub(super) token: MeshToken,
-    pub(super) store: &'a MeshStore,
+    pub(crate) store: &'a MeshStore,
     root: Aabb,
 }
 

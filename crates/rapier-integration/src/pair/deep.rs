@@ -35,17 +35,15 @@ struct Way {
 }
 
 /// An island of two shapes that are deep in each other.
-struct DeepIsland<'a, S> {
-    shapes: &'a S,
-    pose: &'a PairPose,
+struct DeepIsland<'a> {
+    shapes: &'a TriangleShapes<'a>,
     /// True for each shape that may be left through both sides of its triangles.
     is_sheet: [bool; 2],
 }
 
 /// Adds contacts along the ways out of contours to islands that have too few.
-pub(super) fn add_contacts<S: TriangleShapes>(
-    shapes: &S,
-    pose: &PairPose,
+pub(super) fn add_contacts(
+    shapes: &TriangleShapes<'_>,
     islands: &mut OverlapIslands,
     ContourMemory { crossings, segments }: &mut ContourMemory,
     contacts: &mut ContactList<TriangleSurfaceContact>,
@@ -56,12 +54,12 @@ pub(super) fn add_contacts<S: TriangleShapes>(
         segments.extend(
             island
                 .iter()
-                .filter_map(|crossing| Segment::of(crossing, &shapes.local(pose, crossing.pair)?)),
+                .filter_map(|crossing| Segment::of(crossing, &shapes.local(crossing.pair)?)),
         );
         let Some(contour) = Contour::of(segments) else { continue };
         let points = contour.points();
         let is_sheet = [0, 1].map(|i| island.iter().any(|crossing| crossing.is_sheet[i]));
-        let deep = DeepIsland { shapes, pose, is_sheet };
+        let deep = DeepIsland { shapes, is_sheet };
         let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
             continue;
         };
@@ -76,7 +74,7 @@ pub(super) fn add_contacts<S: TriangleShapes>(
     }
 }
 
-impl<S: TriangleShapes> DeepIsland<'_, S> {
+impl DeepIsland<'_> {
     /// Returns the shortest way by which shape 2 leaves an overlap. For a flat contour that is the area vector. For others,
     /// tries the area vector and, from the middle, the normals where that leads out, and the nearest points of both
     /// surfaces.
@@ -104,8 +102,8 @@ impl<S: TriangleShapes> DeepIsland<'_, S> {
 
     /// Returns directions in which the nearest points of both surfaces lead shape 2 out. `point` is in both solids.
     fn nearest_ways(&self, point: DVec3) -> impl Iterator<Item = DVec3> {
-        let (point, pos12) = (point.as_vec3(), self.pose.pos12);
-        let to_nearest = |i: usize, point| Some(self.shapes.nearest(i, point)?.0 - point);
+        let (point, pos12) = (point.as_vec3(), self.shapes.pose.pos12);
+        let to_nearest = |i: usize, point| Some(self.shapes[i].nearest(point)?.0 - point);
         let to_nearest2 = to_nearest(1, pos12.inverse_transform_point(point));
         let ways = [to_nearest(0, point), to_nearest2.map(|way| pos12.rotation * -way)];
         ways.into_iter().flatten().map(|way| way.as_dvec3().normalize_or_zero())
@@ -114,14 +112,14 @@ impl<S: TriangleShapes> DeepIsland<'_, S> {
     /// Returns where shape 1 ends along a direction, and shape 2 against it, seen from a point in both solids: distances,
     /// and outward normals in frame 1.
     fn exits(&self, point: DVec3, direction: DVec3) -> Option<[(f64, DVec3); 2]> {
-        let PairPose { pos12, .. } = self.pose;
+        let PairPose { pos12, .. } = self.shapes.pose;
         let (point, direction) = (point.as_vec3(), direction.as_vec3());
         let rotation = pos12.rotation;
         let at2 = pos12.inverse_transform_point(point);
         let against2 = rotation.inverse() * -direction;
         let [is_sheet1, is_sheet2] = self.is_sheet;
-        let exit1 = self.shapes.exit(0, &Ray::new(point, direction), is_sheet1)?;
-        let (length2, normal2) = self.shapes.exit(1, &Ray::new(at2, against2), is_sheet2)?;
+        let exit1 = self.shapes[0].exit(&Ray::new(point, direction), is_sheet1)?;
+        let (length2, normal2) = self.shapes[1].exit(&Ray::new(at2, against2), is_sheet2)?;
         let exits = [exit1, (length2, rotation * normal2)];
         Some(exits.map(|(length, normal)| (f64::from(length), normal.as_dvec3())))
     }
@@ -135,7 +133,7 @@ impl<S: TriangleShapes> DeepIsland<'_, S> {
         normal: DVec3,
         [exit1, exit2]: [f64; 2],
     ) -> Option<TriangleSurfaceContact> {
-        let [[origin, ..], _] = self.shapes.corners(pair)?;
+        let [origin, ..] = self.shapes[0].corners(pair[0])?;
         let point = point - origin.as_dvec3();
         let points = [point + exit1 * normal, point - exit2 * normal];
         Some(TriangleSurfaceContact::push_out(normal, -exit1 - exit2, points))

@@ -9,17 +9,10 @@
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
-use parry3d::partitioning::BvhNode;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
 
-use super::pose::PairPose;
 use super::triangle_contacts::in_local;
 use super::triangle_shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
-use crate::mesh::MeshView;
-
-/// Greatest product of the numbers of triangles near the other mesh with which all pairs are candidates.
-/// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
-pub(super) const MOST_PAIRS: usize = 1 << 14;
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
@@ -59,39 +52,19 @@ impl Directions {
 }
 
 /// Two shapes whose far contacts are wanted.
-pub(super) struct FarSearch<'a, S> {
-    pub(super) shapes: &'a S,
-    pub(super) pose: &'a PairPose,
-}
+pub(super) struct FarSearch<'a>(pub(super) &'a TriangleShapes<'a>);
 
-/// Returns true if few triangles of two meshes are within the prediction distance of the box around the
-/// other mesh.
-pub(super) fn are_few(meshes: [&MeshView<'_>; 2], pose: &PairPose) -> bool {
-    let PairPose { pos12, prediction, .. } = *pose;
-    let poses = [pos12, pos12.inverse()];
-    let count = |i: usize, most: usize| {
-        let around = BvhNode::leaf(meshes[1 - i].placed_root(&poses[i], prediction), 0);
-        meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
-    };
-    let least = MOST_PAIRS.isqrt();
-    match [0, 1].map(|i| count(i, least)) {
-        [one, _] if one <= least => one * count(1, MOST_PAIRS / one.max(1)) <= MOST_PAIRS,
-        [_, two] if two <= least => two * count(0, MOST_PAIRS / two.max(1)) <= MOST_PAIRS,
-        _ => false,
-    }
-}
-
-impl<S: TriangleShapes> FarSearch<'_, S> {
+impl FarSearch<'_> {
     /// Calls `found` with the contacts of tips, and with those one step of a walk farther, which may be near.
     /// Shapes that are apart also get the contacts where walks from the nearest tips and from the middles end.
     pub(super) fn contacts(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
-        if !self.pose.placement12.is_finite() {
+        if !self.0.pose.placement12.is_finite() {
             return;
         }
-        let within = self.pose.prediction;
+        let within = self.0.pose.prediction;
         for i in 0..2 {
             let mut nearest: Option<TriangleHit> = None;
-            for (half_edge, tip) in self.shapes.tips(i) {
+            for (half_edge, tip) in self.0[i].tips() {
                 let Some(hit) = self.of_point(i, half_edge, tip, within) else { continue };
                 found(hit);
                 self.step(1 - i, &hit, distance(&hit)).into_iter().for_each(&mut found);
@@ -100,7 +73,7 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
                 }
             }
             if is_apart {
-                let middle = self.shapes.bounds(i).center();
+                let middle = self.0[i].bounds().center();
                 let of_middle = self.of_point(i, 0, middle, Real::MAX);
                 let from_middle = of_middle.and_then(|hit| self.step(1 - i, &hit, f64::INFINITY));
                 let starts = [nearest.map(|hit| (1 - i, hit)), from_middle.map(|hit| (i, hit))];
@@ -124,15 +97,15 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
     /// Returns the contact after a step from the point of shape `i`: the triangle of the other shape becomes
     /// the nearest one. `None` beyond a limit.
     fn step(&self, i: usize, (pair, known): &TriangleHit, limit: f64) -> Option<TriangleHit> {
-        let placement = &self.pose.placement12;
-        let [[origin, ..], _] = self.shapes.corners(*pair)?;
+        let placement = &self.0.pose.placement12;
+        let [origin, ..] = self.0[0].corners(pair[0])?;
         let point = match i {
             0 => placement.to_frame2(known.contact.point1, origin),
             _ => known.contact.point2 + origin.as_dvec3(),
         };
         let mut pair = *pair;
-        pair[1 - i] = self.shapes.nearest_triangle(1 - i, point.as_vec3(), limit as Real)?;
-        let local = self.shapes.local(self.pose, pair)?;
+        pair[1 - i] = self.0[1 - i].nearest_triangle(point.as_vec3(), limit as Real)?;
+        let local = self.0.local(pair)?;
         let [t1, t2] = &local.corners;
         Some(hit(pair, contact(t1, t2, limit)?))
     }
@@ -140,11 +113,11 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
     /// Returns the contact of a point and the nearest triangle of the other shape. The point is in the frame of
     /// shape `i`, and stands for the start of a half-edge.
     fn of_point(&self, i: usize, half_edge: u32, point: Vec3, within: Real) -> Option<TriangleHit> {
-        let placement = &self.pose.placement12;
-        let in_other = self.pose.in_other(i, point);
-        let mut pair = [self.shapes.nearest_triangle(1 - i, in_other, within)?; 2];
+        let placement = &self.0.pose.placement12;
+        let in_other = self.0.pose.in_other(i, point);
+        let mut pair = [self.0[1 - i].nearest_triangle(in_other, within)?; 2];
         pair[i] = half_edge / 3;
-        let mut local = self.shapes.local(self.pose, pair)?;
+        let mut local = self.0.local(pair)?;
         local.corners[i] = [in_local(placement, i, point, local.origin); 3];
         let [t1, t2] = &local.corners;
         let contact = contact(t1, t2, f64::from(within))?;

@@ -14,7 +14,7 @@ use crate::mesh::box_between;
 
 /// Parry's height field as a grid of triangles. Parry's rows lie along z, its columns along x.
 #[derive(Copy, Clone)]
-pub(crate) struct Field<'a>(pub(super) &'a HeightField);
+pub(crate) struct Field<'a>(pub(crate) &'a HeightField);
 
 impl Field<'_> {
     /// Returns Parry's number of a triangle: left ones first, along z, then x.

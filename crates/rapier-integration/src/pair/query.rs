@@ -1,7 +1,6 @@
 //! The interface between the pipeline and a kind of pair: [`Pair`], [`PairQuery`], and what these exchange.
 
 use std::cell::Cell;
-use std::sync::Arc;
 use std::thread::LocalKey;
 
 use parry3d::math::{Pose, Real};
@@ -12,7 +11,7 @@ use sbbk_core::volumes::Sphere;
 use super::pose::PairPose;
 use super::reduce::{ContactSummary, PatchPlan, Reduction};
 use super::state::{Candidate, HighWaterMark};
-use crate::mesh::{Change, MeshStore};
+use crate::mesh::Change;
 
 /// A kind of pair: a mesh and another shape.
 pub(crate) trait Pair: Copy {
@@ -26,11 +25,7 @@ pub(crate) trait Pair: Copy {
         Self: 'q;
 
     /// Returns the change since the last query, and begins a query.
-    fn open<'q>(
-        &'q self,
-        store: &'q Arc<MeshStore>,
-        state: &'q mut Self::State,
-    ) -> (Change, Self::Query<'q>);
+    fn open<'q>(&'q self, state: &'q mut Self::State) -> (Change, Self::Query<'q>);
 }
 
 /// A query of a pair. Passes over candidates and memory for them are private to the kind.

@@ -22,9 +22,9 @@ use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
-use super::pose::PairPose;
-use super::ranges::{DISTANT, NEAR_NORMAL, near};
+use super::ranges::{DISTANT, NEAR_NORMAL};
 use super::triangle_contacts::in_local;
+use super::triangle_shape::ShapeFacets;
 use super::triangle_shapes::{ContactSource, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::BEHIND;
 
@@ -70,18 +70,17 @@ pub(super) enum Verdict {
 }
 
 /// Turns contacts of two triangles into contacts of the surfaces around them.
-pub(super) struct SurfaceFilter<'a, S> {
-    pub(super) shapes: &'a S,
-    pub(super) pose: &'a PairPose,
+pub(super) struct SurfaceFilter<'a> {
+    pub(super) shapes: &'a TriangleShapes<'a>,
     pub(super) pair: [u32; 2],
     /// True if edges and vertices may pass each other.
     pub(super) may_pass: bool,
 }
 
 /// Surfaces of both shapes, if known.
-type Surfaces<'s, S> = [Option<Around<<S as TriangleShapes>::Facets<'s>>>; 2];
+type Surfaces<'s> = [Option<Around<ShapeFacets<'s>>>; 2];
 
-impl<S: TriangleShapes> SurfaceFilter<'_, S> {
+impl SurfaceFilter<'_> {
     /// First pass. `clipped` is memory.
     #[inline(always)]
     pub(super) fn apply(
@@ -98,10 +97,10 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         if surfaces.iter().flatten().any(|surface| surface.side == Side::Inner) {
             return Verdict::None;
         }
-        let is_solid = solids::<S>(&surfaces);
+        let is_solid = solids(&surfaces);
         let has_solid = is_solid[0] || is_solid[1];
         let is_crossing = contact.features.is_crossing();
-        if contact.distance > self.shapes.filter_distance() {
+        if contact.distance > self.shapes.filter_distance {
             // The smaller shape may turn before the two meet. A contact from within the larger one would hold it in.
             let mut larger = self.larger();
             let leads_inside = larger.any(|i| self.points_inside(&surfaces, i, &contact));
@@ -133,7 +132,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 
     /// Returns true if both points of a contact are local minima of the distance.
     pub(super) fn is_local_minimum(&self, contact: &TriangleContact) -> bool {
-        let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
+        let Some(local) = self.shapes.local(self.pair) else { return false };
         let surfaces = self.surfaces(&local);
         (0..2).all(|i| self.is_minimum(&surfaces, i, &local, contact))
     }
@@ -141,23 +140,23 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// Returns true if the point on the larger shape, or on one of two equally large ones, is a local minimum of the
     /// distance.
     pub(super) fn is_minimum_of_larger(&self, contact: &TriangleContact) -> bool {
-        let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
+        let Some(local) = self.shapes.local(self.pair) else { return false };
         let surfaces = self.surfaces(&local);
         self.larger().any(|i| self.is_minimum(&surfaces, i, &local, contact))
     }
 
     /// Returns true if a contact leads into a solid.
     pub(super) fn leads_inside(&self, contact: &TriangleContact) -> bool {
-        let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
+        let Some(local) = self.shapes.local(self.pair) else { return false };
         let surfaces = self.surfaces(&local);
         (0..2).any(|i| self.points_inside(&surfaces, i, contact))
     }
 
     /// Returns the surfaces around both triangles. `array::map` would copy them twice.
     #[inline(always)]
-    fn surfaces(&self, local: &TrianglePair) -> Surfaces<'_, S> {
+    fn surfaces(&self, local: &TrianglePair) -> Surfaces<'_> {
         let mut surfaces =
-            [self.shapes.surface(0, self.pair[0]), self.shapes.surface(1, self.pair[1])];
+            [self.shapes[0].around(self.pair[0]), self.shapes[1].around(self.pair[1])];
         for (i, surface) in surfaces.iter_mut().enumerate() {
             let is_sheet = |surface: &&mut Around<_>| surface.side == Side::Sheet;
             let Some(sheet) = surface.as_mut().filter(is_sheet) else { continue };
@@ -177,41 +176,41 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 
     /// Returns the smaller shape.
     fn smaller(&self) -> Option<usize> {
-        let [size1, size2] = [0, 1].map(|i| self.shapes.bounds(i).half_extents().length());
+        let [size1, size2] = [0, 1].map(|i| self.shapes[i].bounds().half_extents().length());
         (size1 != size2).then_some(usize::from(size2 < size1))
     }
 
     /// Returns true if a shape is as thin as what a resting body may sink in.
     fn is_thin(&self, i: usize) -> bool {
-        let half_thickness = f64::from(self.shapes.bounds(i).half_extents().min_element());
-        half_thickness <= THIN * near(self.shapes, self.pose)
+        let half_thickness = f64::from(self.shapes[i].bounds().half_extents().min_element());
+        half_thickness <= THIN * self.shapes.filter_unit()
     }
 
     /// Returns true if the middle of the other shape is in front of a triangle, or not far behind.
     fn is_in_front(&self, i: usize, local: &TrianglePair) -> bool {
         let (normal, height) = self.middle_over(i, local);
-        normal != DVec3::ZERO && height >= -near(self.shapes, self.pose)
+        normal != DVec3::ZERO && height >= -self.shapes.filter_unit()
     }
 
     /// Returns the normal of a triangle, and the height of the middle of the other shape over it.
     fn middle_over(&self, i: usize, local: &TrianglePair) -> (DVec3, f64) {
         let [a, b, c] = local.corners[i];
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        let middle = self.in_local(1 - i, self.shapes.bounds(1 - i).center(), local);
+        let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center(), local);
         (normal, normal.dot(middle - a))
     }
 
     /// Returns the contact of triangles that cross or have passed each other.
     fn crossing(
         &self,
-        surfaces: &Surfaces<'_, S>,
+        surfaces: &Surfaces<'_>,
         local: &TrianglePair,
         contact: &TriangleContact,
         clipped: &mut ManifoldPoints,
     ) -> Verdict {
-        let is_solid = solids::<S>(surfaces);
+        let is_solid = solids(surfaces);
         let is_crossing = contact.features.is_crossing();
-        let shallow = near(self.shapes, self.pose);
+        let shallow = self.shapes.filter_unit();
         let greatest = SHALLOW * contact.distance.abs().max(shallow);
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(surfaces, i, feature, axis);
         let cones = [0, 1].map(|i| self.least_square(surfaces, i));
@@ -255,7 +254,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         }
         let surfaces = self.surfaces(local);
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(&surfaces, i, feature, axis);
-        let (triangles, is_solid) = (local.corners.each_ref(), solids::<S>(&surfaces));
+        let (triangles, is_solid) = (local.corners.each_ref(), solids(&surfaces));
         let cones = [0, 1].map(|i| self.least_square(&surfaces, i));
         let agrees = islands.agrees(self.pair);
         let contact = outward_penetration(triangles, is_solid, cones, ends, agrees, clipped)?;
@@ -282,7 +281,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// Returns true if edges or vertices are far from each other, and may pass each other.
     fn passes_by(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
         let TriangleContact { normal, distance, features, .. } = *contact;
-        distance > DISTANT * near(self.shapes, self.pose)
+        distance > DISTANT * self.shapes.filter_unit()
             && ![features.feature1(), features.feature2()].contains(&Feature::Face)
             && local.corners.iter().any(|corners| leans(corners, normal))
     }
@@ -291,7 +290,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// of the face.
     fn upright_at_border(
         &self,
-        surfaces: &Surfaces<'_, S>,
+        surfaces: &Surfaces<'_>,
         i: usize,
         local: &TrianglePair,
         contact: &TriangleContact,
@@ -304,16 +303,16 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let [a, b, c] = local.corners[i];
         let up = (b - a).cross(c - a).try_normalize()?;
         let own = [normal, -normal][i];
-        let middle = self.in_local(1 - i, self.shapes.bounds(1 - i).center(), local);
+        let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center(), local);
         let up = if up.dot(middle - a) < 0.0 { -up } else { up };
         let cosine = up.dot(own);
         let place = self.place(i, local, contact);
         if cosine > UPRIGHT || !surfaces[i].as_ref()?.is_border(self.pair[i], feature, place) {
             return None;
         }
-        let lowest = self.shapes.lowest(1 - i, self.in_frame(1 - i, up).as_vec3())?;
+        let lowest = self.shapes[1 - i].lowest(self.in_frame(1 - i, up).as_vec3())?;
         let lowest = f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO, local) - a);
-        if lowest < -LIP * near(self.shapes, self.pose) {
+        if lowest < -LIP * self.shapes.filter_unit() {
             return None;
         }
         let distance = contact.distance * cosine.max(0.0);
@@ -333,32 +332,32 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let start = self.place(i, local, contact) + WITHIN * distance * way;
         let ray = Ray::new(start.as_vec3(), way.as_vec3());
         let most = ((1.0 - 2.0 * WITHIN) * distance) as Real;
-        self.shapes.ends_within(i, &ray, most)
+        self.shapes[i].ends_within(&ray, most)
     }
 
     /// Returns the point of a contact on a shape, in the frame of the shape.
     fn place(&self, i: usize, local: &TrianglePair, contact: &TriangleContact) -> DVec3 {
         match i {
             0 => local.origin.as_dvec3() + contact.point1,
-            _ => self.pose.placement12.to_frame2(contact.point2, local.origin),
+            _ => self.shapes.pose.placement12.to_frame2(contact.point2, local.origin),
         }
     }
 
     /// Returns a point of a shape in frame 1, from the origin of two triangles.
     fn in_local(&self, i: usize, point: Vec3, local: &TrianglePair) -> DVec3 {
-        in_local(&self.pose.placement12, i, point, local.origin)
+        in_local(&self.shapes.pose.placement12, i, point, local.origin)
     }
 
     /// Returns a direction of frame 1 in the frame of a shape.
     fn in_frame(&self, i: usize, direction: DVec3) -> DVec3 {
-        if i == 0 { direction } else { self.pose.placement12.inverse * direction }
+        if i == 0 { direction } else { self.shapes.pose.placement12.inverse * direction }
     }
 
     /// Returns true if the point of a contact on a shape is a local minimum of the distance.
     #[inline(always)]
     fn is_minimum(
         &self,
-        surfaces: &Surfaces<'_, S>,
+        surfaces: &Surfaces<'_>,
         i: usize,
         local: &TrianglePair,
         contact: &TriangleContact,
@@ -376,7 +375,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// Returns true if the normal of a contact points into a shape.
     fn points_inside(
         &self,
-        surfaces: &Surfaces<'_, S>,
+        surfaces: &Surfaces<'_>,
         i: usize,
         TriangleContact { normal, features, .. }: &TriangleContact,
     ) -> bool {
@@ -389,7 +388,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 
     /// Returns true if a surface ends at a feature, seen along an axis.
     #[inline(always)]
-    fn ends(&self, surfaces: &Surfaces<'_, S>, i: usize, feature: Feature, axis: DVec3) -> bool {
+    fn ends(&self, surfaces: &Surfaces<'_>, i: usize, feature: Feature, axis: DVec3) -> bool {
         let axis = self.in_frame(i, axis);
         let ends =
             |surface: &Around<_>| surface.is_local_minimum(self.pair[i], feature, axis, None);
@@ -397,7 +396,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     }
 
     /// Returns the square of the least cosine between the normal of a triangle and an axis along which its surface may end.
-    fn least_square(&self, surfaces: &Surfaces<'_, S>, i: usize) -> f64 {
+    fn least_square(&self, surfaces: &Surfaces<'_>, i: usize) -> f64 {
         let Some(Around { facets, .. }) = &surfaces[i] else { return 0.0 };
         facets.cones(self.pair[i]).least_square(false)
     }
@@ -416,8 +415,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
                 Some(smaller) => smaller,
                 // Of two sheets of one size, either order would give another side.
                 None => {
-                    let [middle1, middle2] = [0, 1].map(|i| self.shapes.bounds(i).center());
-                    let middle2 = self.pose.placement12.to_frame1(middle2, Vec3::ZERO);
+                    let [middle1, middle2] = [0, 1].map(|i| self.shapes[i].bounds().center());
+                    let middle2 = self.shapes.pose.placement12.to_frame1(middle2, Vec3::ZERO);
                     let between = middle2 - middle1.as_dvec3();
                     let height = between.length();
                     return Some(SheetSide { shape: None, away: between.try_normalize()?, height });
@@ -430,9 +429,9 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let (normal, height) = self.middle_over(1 - solid, local);
         let (away, own) = match solid {
             0 => (-normal, normal),
-            _ => (normal, self.pose.placement12.inverse * normal),
+            _ => (normal, self.shapes.pose.placement12.inverse * normal),
         };
-        let half_height = own.abs().dot(self.shapes.bounds(solid).half_extents().as_dvec3());
+        let half_height = own.abs().dot(self.shapes[solid].bounds().half_extents().as_dvec3());
         Some(SheetSide { shape: Some(1 - solid), away, height: height + LEAN * half_height })
     }
 
@@ -441,16 +440,16 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     fn is_far_inside(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
         let within = (-contact.distance / SHALLOW) as Real;
         let point1 = (local.origin.as_dvec3() + contact.point2).as_vec3();
-        let point2 = self.pose.placement12.to_frame2(contact.point1, local.origin).as_vec3();
+        let point2 = self.shapes.pose.placement12.to_frame2(contact.point1, local.origin).as_vec3();
         (0..2).zip([point1, point2]).any(|(i, point)| {
-            self.shapes.nearest(i, point).is_some_and(|(nearest, behind)| {
+            self.shapes[i].nearest(point).is_some_and(|(nearest, behind)| {
                 behind >= BEHIND && nearest.distance(point) > within
             })
         })
     }
 }
 
-fn solids<S: TriangleShapes>(surfaces: &Surfaces<'_, S>) -> [bool; 2] {
+fn solids(surfaces: &Surfaces<'_>) -> [bool; 2] {
     [0, 1].map(|i| surfaces[i].as_ref().is_some_and(Around::is_solid))
 }
 

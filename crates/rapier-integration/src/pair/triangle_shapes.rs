@@ -1,21 +1,22 @@
 //! Two shapes made of triangles, as the contact query sees them.
 
-use glamx::DVec3;
-use parry3d::bounding_volume::Aabb;
-use parry3d::math::{Real, Vector};
-use parry3d::query::Ray;
-use parry3d::query::details::NormalConstraints;
-use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
-use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{Around, Facets};
-use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair};
+use std::ops::Index;
+use std::sync::OnceLock;
 
-use super::chunks::ChunkResult;
-use super::field::Field;
+use glamx::DVec3;
+use parry3d::math::Real;
+use parry3d::query::details::NormalConstraints;
+use parry3d::shape::TrianglePseudoNormals;
+use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
+use sbbk_core::leaf::LateralCulling;
+use sbbk_core::query::TrianglePair;
+use sbbk_core::surface::Facets;
+use sbbk_core::tree::Tree;
+
 use super::pose::PairPose;
 use super::query::Moving;
-use super::state::Candidate;
-use crate::mesh::{BEHIND, LazySurface, MeshView, ends_within, exit, is_covered, nearest_triangle};
+use super::ranges::{DISTANT, NEAR_NORMAL, filter_unit, reach};
+use super::triangle_shape::{MeshShape, TriangleShape};
 
 /// Normal cones of both triangles.
 pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
@@ -23,166 +24,112 @@ pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
 /// Features that were closest at the last query, to be tried first.
 pub(super) type Hint = Option<FeaturePair>;
 
-/// A shape made of triangles.
-pub(crate) enum TriangleShape<'s> {
-    /// A mesh and, for contacts of surfaces, its surface.
-    Mesh(&'s MeshView<'s>, Option<&'s LazySurface<'s>>),
-    Field(Field<'s>),
+/// Two shapes made of triangles at a pose. One of them is a mesh.
+pub(crate) struct TriangleShapes<'q> {
+    pub(super) pose: &'q PairPose,
+    pub(super) shapes: [TriangleShape<'q>; 2],
+    /// Trees of two meshes, if both have one.
+    pub(super) trees: Option<[&'q Tree; 2]>,
+    /// 0 if shape 1 is the larger one or a height field, else 1.
+    pub(super) larger: usize,
+    /// Distance up to which contacts must be local minima; infinite for contacts of each two triangles. Farther contacts,
+    /// of soft CCD, are all kept: bodies may turn before they meet.
+    pub(super) filter_distance: f64,
+    /// See [`reach`](Self::reach).
+    pub(super) reach: OnceLock<Real>,
 }
 
-/// Two shapes made of triangles, and their surfaces.
-pub(crate) trait TriangleShapes: Sync {
-    /// The triangles of either shape.
-    type Facets<'f>: Facets
-    where
-        Self: 'f;
-
-    fn moving(&self) -> Moving<'_>;
-
-    /// Adds all pairs of triangles within `margin`, and few others.
-    fn descend(
-        &self,
-        margin: Real,
-        counts: &mut DescentCounts,
-        memory: &mut DescentMemory,
-        found: &mut Vec<Candidate<Hint>>,
-    );
-
-    /// Returns the corners of two triangles; `None` if one does not exist.
-    fn corners(&self, triangles: [u32; 2]) -> Option<[[Vector; 3]; 2]>;
-
-    /// Returns two triangles in frame 1, relative to a corner: with all digits.
-    #[inline(always)]
-    fn local(&self, pose: &PairPose, triangles: [u32; 2]) -> Option<TrianglePair> {
-        let [triangle1, triangle2] = self.corners(triangles)?;
-        Some(TrianglePair::new(&pose.placement12, triangle1, triangle2))
-    }
-
-    /// Calls `then` with the normal cones of two triangles.
-    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>));
-
-    /// Returns the surface around a triangle of shape 1 (0) or 2 (1), for contacts of surfaces.
-    fn surface(&self, i: usize, triangle: u32) -> Option<Around<Self::Facets<'_>>>;
+impl<'q> Index<usize> for TriangleShapes<'q> {
+    type Output = TriangleShape<'q>;
 
     /// Returns shape 1 (0) or 2 (1).
-    fn shape(&self, i: usize) -> TriangleShape<'_>;
-
-    /// Returns true if a shape has an inside.
-    fn is_solid(&self, i: usize) -> bool;
-
-    /// Returns the distance up to which contacts must be local minima; infinite for contacts of
-    /// each two triangles. Farther contacts, of soft CCD, are all kept: bodies may turn before they
-    /// meet.
-    fn filter_distance(&self) -> f64;
-
-    /// Returns the distance up to which all pairs of triangles are candidates. Farther contacts are
-    /// [far](super::far).
-    fn reach(&self) -> Real;
-
-    /// Returns the box around a shape, in its frame.
-    fn bounds(&self, i: usize) -> Aabb {
-        match self.shape(i) {
-            TriangleShape::Mesh(mesh, _) => *mesh.root(),
-            TriangleShape::Field(field) => *field.0.root_aabb(),
-        }
+    #[inline(always)]
+    fn index(&self, i: usize) -> &TriangleShape<'q> {
+        &self.shapes[i]
     }
+}
 
-    /// Returns the least coordinate of a shape along a direction, in its frame; `None` if not known.
-    fn lowest(&self, i: usize, direction: Vector) -> Option<Real> {
-        let TriangleShape::Mesh(mesh, _) = self.shape(i) else { return None };
-        Some(mesh.lowest(direction))
-    }
-
-    /// Returns true if a point in the frame of a shape may be inside it.
-    fn is_covered(&self, i: usize, point: Vector) -> bool {
-        match self.shape(i) {
-            TriangleShape::Mesh(mesh, _) => is_covered(mesh.mesh, point),
-            TriangleShape::Field(_) => true,
-        }
-    }
-
-    /// Returns the nearest point of a surface, and the cosine between the direction to the point
-    /// and the inward normal.
-    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
-        match self.shape(i) {
-            TriangleShape::Mesh(_, surface) => {
-                let (_, nearest, behind) = surface?.nearest(point)?;
-                Some((nearest, behind))
-            }
-            TriangleShape::Field(field) => field.nearest(point),
-        }
-    }
-
-    /// Returns the distance in which a ray from a point inside a shape leaves it, and the outward normal there. `None`
-    /// if the ray meets nothing, or first meets the front of a solid's triangle.
-    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
-        match self.shape(i) {
-            TriangleShape::Mesh(mesh, _) => exit(mesh.mesh, ray, is_sheet),
-            TriangleShape::Field(field) => exit(field.0, ray, is_sheet),
-        }
-    }
-
-    /// Returns true if a solid ends within a length along a ray that starts in it. The ground below a height field
-    /// has no end.
-    fn ends_within(&self, i: usize, ray: &Ray, length: Real) -> bool {
-        match self.shape(i) {
-            TriangleShape::Mesh(mesh, _) => ends_within(mesh.mesh, ray, length),
-            TriangleShape::Field(_) => false,
-        }
-    }
-
-    /// Returns the nearest triangle of a shape to a point in its frame, if that is within a distance. The triangle
-    /// of a height field may be another that is near.
-    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {
-        match self.shape(i) {
-            TriangleShape::Mesh(mesh, _) => nearest_triangle(mesh.mesh, point, within),
-            TriangleShape::Field(field) => field.nearest_triangle(point, within),
-        }
-    }
-
-    /// Returns the tips of a shape and half-edges that start there, for [far](super::far) contacts.
-    fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)> {
-        let surface = match self.shape(i) {
-            TriangleShape::Mesh(_, surface) => surface,
-            TriangleShape::Field(_) => None,
-        };
-        surface.into_iter().flat_map(LazySurface::tips)
-    }
-
-    /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
-    fn separation(&self) -> Option<DVec3>;
-
-    /// Returns the push-out of one shape wholly inside the other, where no contact was found. `is_in_both`: the shapes
-    /// cross, and the middle of the smaller one is known to be in both.
-    fn push_out(&mut self, _is_in_both: bool) -> Option<TriangleHit> {
-        None
+impl TriangleShapes<'_> {
+    /// Returns two triangles in frame 1, relative to a corner: with all digits. `None` if one does not exist.
+    #[inline(always)]
+    pub(super) fn local(&self, [triangle1, triangle2]: [u32; 2]) -> Option<TrianglePair> {
+        let corners1 = self[0].corners(triangle1)?;
+        Some(TrianglePair::new(&self.pose.placement12, corners1, self[1].corners(triangle2)?))
     }
 
     /// Returns true for contacts of surfaces.
-    fn has_surface(&self) -> bool {
-        self.filter_distance() < f64::INFINITY
+    pub(super) fn has_surface(&self) -> bool {
+        self.filter_distance < f64::INFINITY
     }
 
-    /// Calls `then` with the normal cones that contacts obey: none for contacts of surfaces.
+    /// Returns the normal cones that contacts of two triangles obey: none for contacts of surfaces.
     #[inline(always)]
-    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {
-        if self.has_surface() { then([None; 2]) } else { self.with_cones(triangles, then) }
+    pub(super) fn cones(&mut self, triangles: [u32; 2]) -> [Option<TrianglePseudoNormals>; 2] {
+        if self.has_surface() {
+            return [None, None];
+        }
+        let [shape1, shape2] = &mut self.shapes;
+        [shape1.cone(triangles[0]), shape2.cone(triangles[1])]
     }
 
-    /// Returns the translation that separates shape 2 from shape 1 by the shortest way from a point.
-    /// `middle` is in the frame of shape `inner` and must be in both shapes; both must be solids.
-    fn way_out(&self, pose: &PairPose, inner: usize, middle: Vector) -> Option<DVec3> {
-        if !(0..2).all(|i| self.is_solid(i)) {
+    /// Returns the body whose motion limits how long candidates serve: the smaller one.
+    pub(super) fn moving(&self) -> Moving<'_> {
+        let PairPose { placement12, placement21, .. } = self.pose;
+        let smaller = 1 - self.larger;
+        Moving { ball: self[smaller].ball(), placement: [placement21, placement12][smaller] }
+    }
+
+    /// Returns the unit of the filter: the prediction distance, or less for small shapes.
+    pub(super) fn filter_unit(&self) -> f64 {
+        filter_unit(self.pose, self.filter_distance)
+    }
+
+    /// Returns the distance up to which all pairs of triangles are candidates. Farther contacts are
+    /// [far](super::far).
+    pub(super) fn reach(&self) -> Real {
+        *self.reach.get_or_init(|| reach(&self.shapes, self.pose, self.filter_distance))
+    }
+
+    /// Returns a test for pairs of triangles that a descent within `margin` finds and that are no local minima while its candidates
+    /// serve, unless a triangle [bends much](Self::bends_little).
+    pub(super) fn lateral_culling(&self, margin: Real) -> Option<LateralCulling> {
+        let reach = self.reach();
+        let is_filtered = f64::from(reach) <= self.filter_distance;
+        (self.has_surface() && is_filtered).then(|| {
+            let (distance, travel) = ((DISTANT * self.filter_unit()) as Real, margin - reach);
+            LateralCulling::new(distance, NEAR_NORMAL as Real, reach, travel)
+        })
+    }
+
+    /// Returns true if a contact that leans from the normal of a triangle of shape `i` as much as
+    /// [lateral culling](Self::lateral_culling) asks for is no local minimum. Height fields are never culled.
+    pub(super) fn bends_little(&self, i: usize, triangle: u32) -> bool {
+        let TriangleShape::Mesh(MeshShape { surface: Some(surface), .. }) = &self[i] else {
+            return false;
+        };
+        surface.facets().cones(triangle).least_square(false) >= NEAR_NORMAL * NEAR_NORMAL
+    }
+
+    /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other. The way starts at the
+    /// middle of the smaller one, which must be in both. Two equal meshes are both tried.
+    pub(super) fn separation(&self) -> Option<DVec3> {
+        if !(0..2).all(|i| self[i].is_solid()) {
             return None;
         }
-        let placed = pose.in_other(inner, middle);
-        let exit = |i: usize, point: Vector| {
-            let (exit, behind) = self.is_covered(i, point).then(|| self.nearest(i, point))??;
-            (behind >= BEHIND).then_some(exit)
-        };
-        let out = exit(1 - inner, placed)? - placed;
-        exit(inner, middle)?;
-        let out = if inner == 0 { -(pose.pos12.rotation * out) } else { out };
+        let sizes = self.shapes.each_ref().map(TriangleShape::size_squared);
+        let is_inner = |i: &usize| sizes[*i] <= sizes[1 - i];
+        let ways = (0..2).filter(is_inner).filter_map(|i| self.way_out(i));
+        ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
+    }
+
+    /// Returns the translation that separates shape 2 from shape 1 by the shortest way from the middle of shape
+    /// `inner`. The middle must be in both shapes, and both must be solids.
+    fn way_out(&self, inner: usize) -> Option<DVec3> {
+        let middle = self[inner].bounds().center();
+        let placed = self.pose.in_other(inner, middle);
+        let out = self[1 - inner].nearest_exit(placed)? - placed;
+        self[inner].nearest_exit(middle)?;
+        let out = if inner == 0 { -(self.pose.pos12.rotation * out) } else { out };
         Some(out.as_dvec3())
     }
 }
@@ -218,33 +165,11 @@ pub(super) enum ContactSource {
 }
 
 impl ContactSource {
-    /// Returns the normal cones that a contact obeys.
-    pub(super) fn cones(self, of_triangles: Cones<'_>) -> Cones<'_> {
-        if self == Self::PushOut { [None; 2] } else { of_triangles }
-    }
-}
-
-/// Memory for descents.
-#[derive(Default)]
-pub(crate) struct DescentMemory {
-    /// Triangles at which a descent starts.
-    pub(super) near: Vec<u32>,
-    /// Nodes at which a descent starts.
-    pub(super) start: Vec<NodePair>,
-    pub(super) descent: DescentChunk,
-}
-
-/// Result of a chunk of a descent, and memory for it.
-#[derive(Default)]
-pub(super) struct DescentChunk {
-    pub(super) found: Vec<Candidate<Hint>>,
-    pub(super) counts: DescentCounts,
-    pub(super) stack: DescentScratch,
-}
-
-impl ChunkResult for DescentChunk {
-    fn append(&mut self, next: Self) {
-        self.found.extend(next.found);
-        self.counts += next.counts;
+    /// Returns the normal cones that a contact obeys, from those of its triangles.
+    pub(super) fn cones(self, of_triangles: &[Option<TrianglePseudoNormals>; 2]) -> Cones<'_> {
+        of_triangles.each_ref().map(|cone| {
+            let cone = cone.as_ref().filter(|_| self != Self::PushOut)?;
+            Some(cone as &dyn NormalConstraints)
+        })
     }
 }

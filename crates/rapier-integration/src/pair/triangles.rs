@@ -18,7 +18,9 @@ use sbbk_core::traverse::{DescentCounts, SlackLimits};
 use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
 use super::deep::{self, ContourMemory};
+use super::descents::DescentMemory;
 use super::far::{Directions, FarSearch};
+use super::inside::{HeldMesh, InsideTest};
 use super::islands::{Crossing, Overlap, OverlapIslands};
 use super::passed::PassedTriangles;
 use super::pose::PairPose;
@@ -28,7 +30,7 @@ use super::state::Candidate;
 use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict, is_touching};
 use super::triangle_contacts::{constrained_normal, write_points};
 use super::triangle_shapes::{
-    ContactSource, DescentMemory, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
+    ContactSource, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
 };
 
 /// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until bodies
@@ -47,10 +49,10 @@ const NEARER: f64 = 0.999;
 const OUT_OF_FACE: f64 = 0.7;
 
 /// A query about two shapes made of triangles.
-pub(crate) struct TriangleQuery<'q, S> {
-    pub(super) shapes: S,
-    pub(super) pose: &'q PairPose,
+pub(crate) struct TriangleQuery<'q> {
+    pub(super) shapes: TriangleShapes<'q>,
     pub(super) patches: Option<PatchPlan>,
+    pub(super) inside: &'q mut InsideTest,
 }
 
 /// Memory for queries.
@@ -101,7 +103,7 @@ thread_local! {
         Cell::default();
 }
 
-impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
+impl PairQuery for TriangleQuery<'_> {
     type Hint = Hint;
     type Contact = TriangleSurfaceContact;
     type Scratch = TriangleScratch;
@@ -113,7 +115,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
     }
 
     fn pose(&self) -> &PairPose {
-        self.pose
+        self.shapes.pose
     }
 
     fn moving(&self) -> Moving<'_> {
@@ -156,15 +158,16 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         if islands.finish_first_pass(separation, |pair, way| self.overlap(pair, way)) {
             self.second_pass(islands, contours, clipped, contacts);
         }
-        if limits.reach < f64::from(self.pose.prediction) {
+        if limits.reach < f64::from(self.pose().prediction) {
             self.add_far(!*is_near, lead_one_way, clipped, contacts);
-        } else if limits.reach > self.shapes.filter_distance() {
+        } else if limits.reach > self.shapes.filter_distance {
             self.reject_aside(directions, islands, contacts);
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
             let is_in_both = islands.separation.is_some();
-            contacts.extend(self.shapes.push_out(is_in_both));
+            let held = HeldMesh::of(&self.shapes);
+            contacts.extend(held.and_then(|held| held.push_out(is_in_both, self.inside)));
         }
         if contacts.is_empty() {
             contacts.extend(islands.overlaps().filter_map(|pair| self.contact_of_triangles(pair)));
@@ -174,8 +177,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
     /// Makes one patch for each direction if all contacts are beyond the filter distance. Rapier's solver
     /// drops such points of manifolds of more than four, and a falling plate would turn about one point.
     fn reduction(&self, contacts: &ContactList<TriangleSurfaceContact>) -> Option<PatchPlan> {
-        let near = self.shapes.filter_distance();
-        let may_be_far = f64::from(self.pose.prediction) > near;
+        let near = self.shapes.filter_distance;
+        let may_be_far = f64::from(self.pose().prediction) > near;
         let is_far = |(_, hit): &TriangleHit| hit.contact.distance > near;
         if may_be_far && contacts.iter().all(is_far) {
             return Some(PatchPlan::ALL_FAR);
@@ -190,17 +193,13 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         points: &mut ContactPoints,
     ) -> Option<ContactSummary> {
         let (pair, TriangleSurfaceContact { contact, source }) = hit;
-        let [[origin, ..], _] = self.shapes.corners(*pair)?;
-        let (mut normal, mut has_cones) = (None, false);
-        self.shapes.with_constraints(*pair, |cones| {
-            let cones = source.cones(cones);
-            normal = constrained_normal(contact, cones, &self.pose.pos12);
-            has_cones = cones.iter().any(Option::is_some);
-        });
-        let normal = normal?;
+        let [origin, ..] = self.shapes[0].corners(pair[0])?;
+        let of_triangles = self.shapes.cones(*pair);
+        let cones = source.cones(&of_triangles);
+        let normal = constrained_normal(contact, cones, &self.pose().pos12)?;
         let point = (origin.as_dvec3() + contact.point1).as_vec3();
         let mut distance = contact.distance as Real;
-        if has_cones {
+        if cones.iter().any(Option::is_some) {
             // Cones move points.
             self.points(hit, scratch, points);
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
@@ -215,29 +214,29 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         points: &mut ContactPoints,
     ) {
-        let Self { shapes, pose, .. } = self;
+        let shapes = &mut self.shapes;
         let clipped = &mut scratch.first.clipped;
         points.points.clear();
-        let Some(local) = shapes.local(pose, *pair) else { return };
-        shapes.with_constraints(*pair, |cones| {
-            let [t1, t2] = &local.corners;
-            clipped.clear();
-            if *source != ContactSource::PushOut {
-                clip(t1, t2, contact.normal, clipped);
-            }
-            if *source == ContactSource::OutwardAxis {
-                deepen(clipped, contact);
-            } else {
-                push_closest(t1, t2, contact, clipped);
-            }
-            let deepest = -shapes.filter_distance().max(DEEPEST * f64::from(pose.prediction));
-            clipped.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
-            write_points(pose, &local, contact, clipped, source.cones(cones), points);
-        });
+        let Some(local) = shapes.local(*pair) else { return };
+        let of_triangles = shapes.cones(*pair);
+        let [t1, t2] = &local.corners;
+        clipped.clear();
+        if *source != ContactSource::PushOut {
+            clip(t1, t2, contact.normal, clipped);
+        }
+        if *source == ContactSource::OutwardAxis {
+            deepen(clipped, contact);
+        } else {
+            push_closest(t1, t2, contact, clipped);
+        }
+        let pose = shapes.pose;
+        let deepest = -shapes.filter_distance.max(DEEPEST * f64::from(pose.prediction));
+        clipped.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
+        write_points(pose, &local, contact, clipped, source.cones(&of_triangles), points);
     }
 }
 
-impl<S: TriangleShapes> TriangleQuery<'_, S> {
+impl TriangleQuery<'_> {
     /// Adds the contact of a candidate, unless the surfaces have none there.
     #[inline(always)]
     fn first_pass(&self, candidate: &mut Candidate<Hint>, limits: Limits, first: &mut FirstPass) {
@@ -245,7 +244,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
             return;
         }
         let pair = candidate.subshapes;
-        let Some(local) = self.shapes.local(self.pose, pair) else { return };
+        let Some(local) = self.shapes.local(pair) else { return };
         let Some(contact) = touch(&local, candidate, limits) else { return };
         first.is_near = true;
         match self.filter(pair).apply(&local, contact, &mut first.clipped) {
@@ -265,8 +264,8 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         }
     }
 
-    fn filter(&self, pair: [u32; 2]) -> SurfaceFilter<'_, S> {
-        SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair, may_pass: true }
+    fn filter(&self, pair: [u32; 2]) -> SurfaceFilter<'_> {
+        SurfaceFilter { shapes: &self.shapes, pair, may_pass: true }
     }
 
     /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.
@@ -280,7 +279,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         let nearest = distances.fold(f64::INFINITY, f64::min);
         let is_nearest = |contact: &TriangleContact| contact.distance < NEARER * nearest;
         for &(pair, contact) in passing.iter().filter(|(_, contact)| is_nearest(contact)) {
-            let Some(local) = self.shapes.local(self.pose, pair) else { continue };
+            let Some(local) = self.shapes.local(pair) else { continue };
             let filter = SurfaceFilter { may_pass: false, ..self.filter(pair) };
             if let Verdict::Contact(hit, border) = filter.apply(&local, contact, clipped) {
                 contacts.push((pair, hit));
@@ -305,12 +304,12 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         let (old_count, reach) = (contacts.len(), f64::from(self.shapes.reach()));
         // The nearest contact counts, even if it may pass by.
         let may_pass = old_count > 0;
-        let far = FarSearch { shapes: &self.shapes, pose: self.pose };
+        let far = FarSearch(&self.shapes);
         far.contacts(is_apart, |(pair, TriangleSurfaceContact { contact, .. })| {
             if contact.distance <= reach {
                 return;
             }
-            let Some(local) = self.shapes.local(self.pose, pair) else { return };
+            let Some(local) = self.shapes.local(pair) else { return };
             let filter = SurfaceFilter { may_pass, ..self.filter(pair) };
             if let Verdict::Contact(mut hit, upright) = filter.apply(&local, contact, clipped) {
                 hit.contact = upright.filter(|_| lead_one_way).unwrap_or(hit.contact);
@@ -336,7 +335,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         islands: &OverlapIslands,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let limit = self.shapes.filter_distance();
+        let limit = self.shapes.filter_distance;
         let is_near = |contact: &TriangleContact| contact.distance <= limit;
         if !contacts.iter().any(|(_, hit)| is_near(&hit.contact)) {
             let is_minimum =
@@ -368,11 +367,11 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     ) {
         // Surfaces are asked for only where something crosses.
         let Some(Crossing { pair, .. }) = islands.crossings.first() else { return };
-        if self.shapes.is_solid(0) || self.shapes.is_solid(1) {
+        if self.shapes[0].is_solid() || self.shapes[1].is_solid() {
             return;
         }
         for i in 0..2 {
-            if let Some(surface) = self.shapes.surface(i, pair[i]) {
+            if let Some(surface) = self.shapes[i].around(pair[i]) {
                 passed.reject(i, &surface.facets, islands.final_normals(i), contacts);
             }
         }
@@ -380,15 +379,15 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
 
     /// Returns the contact of two triangles for surfaces that meet without a contact of their own.
     fn contact_of_triangles(&self, pair: [u32; 2]) -> Option<TriangleHit> {
-        let local = self.shapes.local(self.pose, pair)?;
+        let local = self.shapes.local(pair)?;
         let [t1, t2] = &local.corners;
-        let contact = contact(t1, t2, f64::from(self.pose.prediction))?;
+        let contact = contact(t1, t2, f64::from(self.pose().prediction))?;
         Some((pair, TriangleSurfaceContact { contact, source: ContactSource::Triangles }))
     }
 
     /// Returns the overlap of two triangles along a direction in which triangle 2 leaves.
     fn overlap(&self, pair: [u32; 2], way: DVec3) -> Overlap {
-        let Some(local) = self.shapes.local(self.pose, pair) else {
+        let Some(local) = self.shapes.local(pair) else {
             return Overlap { length: 0.0, leads_out: false };
         };
         let heights = local.corners.map(|corners| corners.map(|corner| corner.dot(way)));
@@ -412,10 +411,10 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
-        deep::add_contacts(&self.shapes, self.pose, islands, contours, contacts);
+        deep::add_contacts(&self.shapes, islands, contours, contacts);
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
-            let Some(local) = self.shapes.local(self.pose, crossing.pair) else { continue };
+            let Some(local) = self.shapes.local(crossing.pair) else { continue };
             let filter = self.filter(crossing.pair);
             let contact = filter.supporting_contact(&local, &crossing, islands, clipped);
             contacts.extend(contact.map(|contact| (crossing.pair, contact)));

@@ -48,7 +48,7 @@ where
     let new_pair = || store.counters.pairs.raise();
     let state: &mut PairState<P::State, P::Hint> = state_in(workspace, manifolds, new_pair);
     let PairState { shapes, memory } = state;
-    let (change, mut query) = pair.open(store, shapes);
+    let (change, mut query) = pair.open(shapes);
     memory.apply_change(change, manifolds);
     if memory.is_unchanged(query.pose(), manifolds.len()) {
         return QueryOutcome::Unchanged;

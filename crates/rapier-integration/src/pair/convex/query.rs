@@ -2,7 +2,6 @@
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::thread::LocalKey;
 
 use parry3d::math::Real;
@@ -19,7 +18,7 @@ use super::parts::{Part, PartData, Parts};
 use super::placed::PlacedPart;
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::mesh::{Change, LazySurface, MeshStore, PairMesh};
+use crate::mesh::{Change, LazySurface, PairMesh};
 use crate::pair::pose::PairPose;
 use crate::pair::query::{
     ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory,
@@ -38,7 +37,6 @@ impl<'a> Pair for ConvexPair<'a> {
 
     fn open<'q>(
         &'q self,
-        _: &'q Arc<MeshStore>,
         (known_mesh, part_data): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);

@@ -1,5 +1,3 @@
-use std::sync::Arc;
-
 use parry3d::math::{Pose, Vector};
 use parry3d::shape::{Ball, SharedShape, TriMesh};
 use sbbk_core::contact::contact;
@@ -9,15 +7,16 @@ use sbbk_core::tree::BuildOptions;
 use super::*;
 use crate::SbbkConfig;
 use crate::mesh::MeshStore;
-use crate::pair::mesh_mesh::MeshPair;
+use crate::pair::descents::DescentMemory;
+use crate::pair::mesh_pair::{MeshPair, ShapeView};
+use crate::pair::pose::PairPose;
 use crate::pair::query::Pair;
-use crate::pair::triangle_shapes::DescentMemory;
 
 /// Balls with triangles as large as the prediction distance, apart and crossing. Would
-/// catch contacts that [`lateral_culling`] loses.
+/// catch contacts that [`TriangleShapes::lateral_culling`] loses.
 #[test]
 fn triangles_beside_each_other_pass_by() {
-    let store = Arc::new(MeshStore::new(BuildOptions::default(), 1 << 30));
+    let store = MeshStore::new(BuildOptions::default(), 1 << 30);
     let shapes = [20, 30].map(|rows| {
         let (mut vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
         for (i, vertex) in (0_u32..).zip(&mut vertices) {
@@ -26,18 +25,18 @@ fn triangles_beside_each_other_pass_by() {
         SharedShape::new(TriMesh::new(vertices, triangles).unwrap())
     });
     let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
-    let seen = meshes.map(|mesh| store.view(mesh).unwrap());
+    let seen = meshes.map(|mesh| ShapeView::Mesh(store.view(mesh).unwrap()));
     let (config, mut counts) = (&SbbkConfig::default(), [0; 2]);
     for (i, gap) in [(1, 0.03), (2, 0.0), (3, -0.03), (4, -0.06), (5, 0.0)] {
         let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);
         let place = turn.normalize() * (2.06 + gap);
         let pose = PairPose::new(&Pose::new(place, turn), 0.08);
-        let mesh_pair = MeshPair { pose: &pose, meshes: seen, config };
+        let mesh_pair = MeshPair { pose: &pose, shapes: seen, config };
         for has_trees in [false, true] {
             let registered = has_trees
                 .then(|| [0, 1].map(|i| store.register(meshes[i], Some(&shapes[i])).unwrap()));
             let mut known = Default::default();
-            let shapes = mesh_pair.open(&store, &mut known).1.shapes;
+            let shapes = mesh_pair.open(&mut known).1.shapes;
             let mut found = Vec::new();
             let scratch = &mut DescentMemory::default();
             let tests = &mut DescentCounts::default();
@@ -46,14 +45,14 @@ fn triangles_beside_each_other_pass_by() {
             found.sort_unstable();
             let count = meshes.map(|mesh| mesh.indices().len() as u32);
             for pair in (0..count[0]).flat_map(|i| (0..count[1]).map(move |j| [i, j])) {
-                let local = shapes.local(&pose, pair).unwrap();
+                let local = shapes.local(pair).unwrap();
                 let [t1, t2] = &local.corners;
                 if t1[0].distance(t2[0]) > 1.0 {
                     continue;
                 }
                 let contact = contact(t1, t2, f64::from(pose.prediction));
                 let Some(contact) = contact else { continue };
-                let filter = SurfaceFilter { shapes: &shapes, pose: &pose, pair, may_pass: true };
+                let filter = SurfaceFilter { shapes: &shapes, pair, may_pass: true };
                 let may_be_left_out =
                     filter.passes_by(&local, &contact) && !filter.is_local_minimum(&contact);
                 let is_found = found.binary_search(&pair).is_ok();

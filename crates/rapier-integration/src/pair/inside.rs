@@ -1,0 +1,184 @@
+//! A mesh inside a larger one: in a room, or in a solid that pushes it out.
+
+use parry3d::math::{Real, Vector};
+use parry3d::query::{PointQuery, Ray};
+use sbbk_core::surface::SurfaceKind;
+use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::Sphere;
+
+use super::pose::PairPose;
+use super::ranges::{filter_distance, filter_unit};
+use super::triangle_contacts::in_local;
+use super::triangle_shape::{MeshShape, TriangleShape};
+use super::triangle_shapes::{TriangleHit, TriangleShapes, TriangleSurfaceContact};
+use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
+
+/// Part of a body that may stick out of a room that holds it, in half heights of the body. Higher:
+/// bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
+const STICKS_OUT: Real = 0.5;
+
+/// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in tenths of its
+/// radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into solids.
+const SUNK: f64 = 0.5;
+
+/// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low halls. Lower: small fast
+/// bodies fall through floors and walls that are solids.
+const SLAB: Real = 0.1;
+
+/// Share of an f32 distance that is a lower bound of the exact one.
+const SURE: f64 = 0.99;
+
+/// Last result of the test whether the smaller mesh is inside the larger one. Spares most queries a test.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum InsideTest {
+    #[default]
+    Unknown,
+    /// The larger mesh is no solid.
+    NoSolid,
+    /// A point of the smaller mesh was at least this far outside at this placement of the smaller mesh.
+    Outside(Placement, f64),
+}
+
+impl InsideTest {
+    /// A point is `distance` outside at a placement of the smaller mesh.
+    fn outside(placement: &Placement, distance: f32) -> Self {
+        Self::Outside(*placement, SURE * f64::from(distance))
+    }
+
+    /// Returns true if a mesh with points in `ball` cannot have come inside.
+    fn is_outside(&self, ball: Sphere, placement: &Placement) -> bool {
+        match self {
+            Self::Unknown => false,
+            Self::NoSolid => true,
+            Self::Outside(before, distance) => {
+                placement.motion_bound(before, ball.centre, ball.radius) < *distance
+            }
+        }
+    }
+}
+
+/// A mesh, and a larger one that may hold it.
+pub(super) struct HeldMesh<'a> {
+    pose: &'a PairPose,
+    held: &'a MeshView<'a>,
+    holder: &'a MeshView<'a>,
+    /// Surface of the holder.
+    surface: &'a LazySurface<'a>,
+    /// 0 if the holder is shape 1, else 1.
+    outer: usize,
+    is_room: bool,
+}
+
+impl<'a> HeldMesh<'a> {
+    /// Returns `None` unless two meshes have contacts of surfaces.
+    pub(super) fn of(shapes: &'a TriangleShapes<'_>) -> Option<Self> {
+        let outer = shapes.larger;
+        let TriangleShape::Mesh(MeshShape { view: held, .. }) = &shapes[1 - outer] else {
+            return None;
+        };
+        let TriangleShape::Mesh(MeshShape { view: holder, surface, is_room }) = &shapes[outer]
+        else {
+            return None;
+        };
+        Some(Self {
+            pose: shapes.pose,
+            held,
+            holder,
+            surface: surface.as_ref()?,
+            outer,
+            is_room: *is_room,
+        })
+    }
+
+    /// Returns true if the larger mesh is a room for the smaller one: the smaller one is in it, or
+    /// hardly sticks out. A long tube is a room although its ends are open. Flat solids are no rooms, nor are
+    /// solids that thin bodies have just sunk in.
+    pub(super) fn is_in_room(&self, test: &mut InsideTest) -> bool {
+        let Self { held, holder, .. } = self;
+        if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
+            return false;
+        }
+        let middle = self.in_holder(held.ball().centre);
+        let Some(exit) = self.exit(middle, test) else { return false };
+        let depth = exit.distance(middle);
+        let way = self.pose.in_other(self.outer, exit) - held.ball().centre;
+        let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
+        let unit = filter_unit(self.pose, filter_distance(true, held.ball().radius));
+        depth >= (1.0 - STICKS_OUT) * height
+            && f64::from(depth + height) >= SUNK * unit
+            && !self.is_slab(middle, exit)
+            && !self.surface.is_declared_solid()
+    }
+
+    /// Returns a point of the held mesh in the frame of the holder.
+    fn in_holder(&self, point: Vector) -> Vector {
+        self.pose.in_other(1 - self.outer, point)
+    }
+
+    /// Returns true if the larger mesh is too flat for a room where `point` is in it. `exit` is the nearest point of the surface.
+    fn is_slab(&self, point: Vector, exit: Vector) -> bool {
+        let most = SLAB * 2.0 * self.holder.sorted_extents().y - exit.distance(point);
+        let ray = Ray::new(point, (point - exit).normalize_or_zero());
+        self::exit(self.holder.mesh, &ray, false).is_some_and(|(length, _)| length < most)
+    }
+
+    /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is
+    /// in the frame of the larger mesh.
+    fn exit(&self, point: Vector, test: &mut InsideTest) -> Option<Vector> {
+        let Self { held, holder, surface, .. } = self;
+        let PairPose { placement12, placement21, .. } = self.pose;
+        let placement = [placement12, placement21][self.outer];
+        if test.is_outside(held.ball(), placement) {
+            return None;
+        }
+        let from_box = holder.root().distance_to_local_point(point, true);
+        if from_box > 0.0 {
+            *test = InsideTest::outside(placement, from_box);
+            return None;
+        }
+        let is_covered = is_covered(holder.mesh, point);
+        let (_, near, behind) = surface.nearest(point)?;
+        let is_inside = behind >= BEHIND && (is_covered || surface.kind() == SurfaceKind::Solid);
+        if behind < -BEHIND || !is_covered && !is_inside {
+            *test = InsideTest::outside(placement, near.distance(point));
+        }
+        is_inside.then_some(near)
+    }
+
+    /// Returns the contact that leads the held mesh out of a solid, by the shortest way from its middle.
+    ///
+    /// Tests one vertex, unless the middle is known to be in both: a mesh that pierces the surface has contacts.
+    pub(super) fn push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
+        let Self { pose, held, holder, surface, outer, is_room } = *self;
+        let vertex = self.in_holder(held.corners(0)[0]);
+        if !is_in_both {
+            if is_room {
+                return None;
+            }
+            self.exit(vertex, test)?;
+            if surface.kind() != SurfaceKind::Solid {
+                *test = InsideTest::NoSolid;
+                return None;
+            }
+        }
+        let middle = self.in_holder(held.ball().centre);
+        let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
+            let (triangle, exit, behind) = surface.nearest(from)?;
+            (behind >= BEHIND).then_some((triangle, exit, from))
+        })?;
+        let mut subshapes = [0; 2];
+        subshapes[outer] = triangle;
+        let first = if outer == 0 { holder } else { held };
+        let origin = first.corners(subshapes[0])[0];
+        let mut points =
+            [exit, from].map(|point| in_local(&pose.placement12, outer, point, origin));
+        if outer == 1 {
+            points.reverse();
+        }
+        let [point1, point2] = points;
+        let normal = (point1 - point2).try_normalize()?;
+        let distance = (point2 - point1).dot(normal);
+        holder.store.counters.push_outs.raise();
+        Some((subshapes, TriangleSurfaceContact::push_out(normal, distance, points)))
+    }
+}
