@@ -69,103 +69,100 @@ pub(super) enum Verdict {
     Crossing(Crossing, Option<TriangleSurfaceContact>),
 }
 
-/// Turns contacts of two triangles into contacts of the surfaces around them.
+/// Two triangles and the surfaces around them. Turns contacts of the triangles into contacts of the surfaces.
 pub(super) struct SurfaceFilter<'a> {
-    pub(super) shapes: &'a TriangleShapes<'a>,
-    pub(super) pair: [u32; 2],
+    shapes: &'a TriangleShapes<'a>,
+    pair: [u32; 2],
+    /// The triangles.
+    local: &'a TrianglePair,
+    /// Surfaces of both shapes, if known.
+    surfaces: [Option<Around<ShapeFacets<'a>>>; 2],
     /// True if edges and vertices may pass each other.
-    pub(super) may_pass: bool,
+    may_pass: bool,
 }
 
-/// Surfaces of both shapes, if known.
-type Surfaces<'s> = [Option<Around<ShapeFacets<'s>>>; 2];
+impl<'a> SurfaceFilter<'a> {
+    /// `local` are the triangles of `pair`, whose edges and vertices may pass each other.
+    #[inline(always)]
+    pub(super) fn new(
+        shapes: &'a TriangleShapes<'a>,
+        pair: [u32; 2],
+        local: &'a TrianglePair,
+        may_pass: bool,
+    ) -> Self {
+        let surfaces = [shapes[0].around(pair[0]), shapes[1].around(pair[1])];
+        let mut filter = Self { shapes, pair, local, surfaces, may_pass };
+        for i in 0..2 {
+            let is_sheet = filter.surfaces[i].as_ref().is_some_and(|it| it.side == Side::Sheet);
+            let other = 1 - i;
+            if is_sheet
+                && filter.is_thin(other)
+                && filter.smaller() == Some(other)
+                && filter.is_in_front(i)
+                && let Some(sheet) = &mut filter.surfaces[i]
+            {
+                sheet.side = Side::Outer;
+            }
+        }
+        filter
+    }
 
-impl SurfaceFilter<'_> {
     /// First pass. `clipped` is memory.
     #[inline(always)]
-    pub(super) fn apply(
-        &self,
-        local: &TrianglePair,
-        contact: TriangleContact,
-        clipped: &mut ManifoldPoints,
-    ) -> Verdict {
+    pub(super) fn apply(&self, contact: TriangleContact, clipped: &mut ManifoldPoints) -> Verdict {
         let of_triangles = TriangleSurfaceContact { contact, source: ContactSource::Triangles };
-        let surfaces = self.surfaces(local);
-        if let [None, None] = surfaces {
+        if let [None, None] = self.surfaces {
             return Verdict::Contact(of_triangles, None);
         }
-        if surfaces.iter().flatten().any(|surface| surface.side == Side::Inner) {
+        if self.surfaces.iter().flatten().any(|surface| surface.side == Side::Inner) {
             return Verdict::None;
         }
-        let is_solid = solids(&surfaces);
+        let is_solid = self.are_solid();
         let has_solid = is_solid[0] || is_solid[1];
         let is_crossing = contact.features.is_crossing();
         if contact.distance > self.shapes.filter_distance {
             // The smaller shape may turn before the two meet. A contact from within the larger one would hold it in.
             let mut larger = self.larger();
-            let leads_inside = larger.any(|i| self.points_inside(&surfaces, i, &contact));
+            let leads_inside = larger.any(|i| self.points_inside(i, &contact));
             return if leads_inside { Verdict::None } else { Verdict::Contact(of_triangles, None) };
         }
         if !is_crossing {
-            if self.may_pass && self.passes_by(local, &contact) {
+            if self.may_pass && self.passes_by(&contact) {
                 return Verdict::Passing;
             }
-            let is_minimum = |i: usize| self.is_minimum(&surfaces, i, local, &contact);
+            let is_minimum = |i: usize| self.is_minimum(i, &contact);
             let is_first_minimum = is_minimum(0);
             if is_first_minimum && is_minimum(1) {
-                let upright =
-                    (0..2).find_map(|i| self.upright_at_border(&surfaces, i, local, &contact));
+                let upright = (0..2).find_map(|i| self.upright_at_border(i, &contact));
                 return Verdict::Contact(of_triangles, upright);
             }
             // A local minimum does not point inside: spares the test.
-            let points_inside = |i: usize| self.points_inside(&surfaces, i, &contact);
+            let points_inside = |i: usize| self.points_inside(i, &contact);
             let has_passed = has_solid
                 && !(is_solid[0] && is_first_minimum)
                 && (0..2).all(|i| !is_solid[i] || points_inside(i));
-            let ends_between = |i: usize| is_solid[i] && self.ends_between(i, local, &contact);
+            let ends_between = |i: usize| is_solid[i] && self.ends_between(i, &contact);
             if !has_passed || ends_between(0) && ends_between(1) {
                 return Verdict::None;
             }
         }
-        self.crossing(&surfaces, local, &contact, clipped)
+        self.crossing(&contact, clipped)
     }
 
     /// Returns true if both points of a contact are local minima of the distance.
     pub(super) fn is_local_minimum(&self, contact: &TriangleContact) -> bool {
-        let Some(local) = self.shapes.local(self.pair) else { return false };
-        let surfaces = self.surfaces(&local);
-        (0..2).all(|i| self.is_minimum(&surfaces, i, &local, contact))
+        (0..2).all(|i| self.is_minimum(i, contact))
     }
 
     /// Returns true if the point on the larger shape, or on one of two equally large ones, is a local minimum of the
     /// distance.
     pub(super) fn is_minimum_of_larger(&self, contact: &TriangleContact) -> bool {
-        let Some(local) = self.shapes.local(self.pair) else { return false };
-        let surfaces = self.surfaces(&local);
-        self.larger().any(|i| self.is_minimum(&surfaces, i, &local, contact))
+        self.larger().any(|i| self.is_minimum(i, contact))
     }
 
     /// Returns true if a contact leads into a solid.
     pub(super) fn leads_inside(&self, contact: &TriangleContact) -> bool {
-        let Some(local) = self.shapes.local(self.pair) else { return false };
-        let surfaces = self.surfaces(&local);
-        (0..2).any(|i| self.points_inside(&surfaces, i, contact))
-    }
-
-    /// Returns the surfaces around both triangles. `array::map` would copy them twice.
-    #[inline(always)]
-    fn surfaces(&self, local: &TrianglePair) -> Surfaces<'_> {
-        let mut surfaces =
-            [self.shapes[0].around(self.pair[0]), self.shapes[1].around(self.pair[1])];
-        for (i, surface) in surfaces.iter_mut().enumerate() {
-            let is_sheet = |surface: &&mut Around<_>| surface.side == Side::Sheet;
-            let Some(sheet) = surface.as_mut().filter(is_sheet) else { continue };
-            let other = 1 - i;
-            if self.is_thin(other) && self.smaller() == Some(other) && self.is_in_front(i, local) {
-                sheet.side = Side::Outer;
-            }
-        }
-        surfaces
+        (0..2).any(|i| self.points_inside(i, contact))
     }
 
     /// Returns the larger shape, or both if they are equally large.
@@ -187,41 +184,35 @@ impl SurfaceFilter<'_> {
     }
 
     /// Returns true if the middle of the other shape is in front of a triangle, or not far behind.
-    fn is_in_front(&self, i: usize, local: &TrianglePair) -> bool {
-        let (normal, height) = self.middle_over(i, local);
+    fn is_in_front(&self, i: usize) -> bool {
+        let (normal, height) = self.middle_over(i);
         normal != DVec3::ZERO && height >= -self.shapes.filter_unit()
     }
 
     /// Returns the normal of a triangle, and the height of the middle of the other shape over it.
-    fn middle_over(&self, i: usize, local: &TrianglePair) -> (DVec3, f64) {
-        let [a, b, c] = local.corners[i];
+    fn middle_over(&self, i: usize) -> (DVec3, f64) {
+        let [a, b, c] = self.local.corners[i];
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center(), local);
+        let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center());
         (normal, normal.dot(middle - a))
     }
 
     /// Returns the contact of triangles that cross or have passed each other.
-    fn crossing(
-        &self,
-        surfaces: &Surfaces<'_>,
-        local: &TrianglePair,
-        contact: &TriangleContact,
-        clipped: &mut ManifoldPoints,
-    ) -> Verdict {
-        let is_solid = solids(surfaces);
+    fn crossing(&self, contact: &TriangleContact, clipped: &mut ManifoldPoints) -> Verdict {
+        let is_solid = self.are_solid();
         let is_crossing = contact.features.is_crossing();
         let shallow = self.shapes.filter_unit();
         let greatest = SHALLOW * contact.distance.abs().max(shallow);
-        let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(surfaces, i, feature, axis);
-        let cones = [0, 1].map(|i| self.least_square(surfaces, i));
-        let triangles = local.corners.each_ref();
+        let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
+        let cones = [0, 1].map(|i| self.least_square(i));
+        let triangles = self.local.corners.each_ref();
         let good = extremal_penetration(triangles, is_solid, cones, ends, greatest, clipped);
-        if good.is_none() && !is_crossing && is_touching(local, contact, TOUCHING) {
+        if good.is_none() && !is_crossing && self.is_touching(contact, TOUCHING) {
             return Verdict::None;
         }
         let (normal, depth) =
             good.map_or_else(Default::default, |good| (good.normal, -good.distance));
-        let sheet = self.sheet_side(is_solid, local);
+        let sheet = self.sheet_side(is_solid);
         // The far side of a thin wall, behind which the sheet is.
         if !is_crossing && sheet.is_some_and(|sheet| sheet.is_pushed_through(normal)) {
             return Verdict::None;
@@ -233,7 +224,7 @@ impl SurfaceFilter<'_> {
             is_reliable: good.is_some(),
             normal,
             depth,
-            outward: surfaces.each_ref().map(|surface| outward(surface.as_ref()?.side)),
+            outward: self.surfaces.each_ref().map(|surface| outward(surface.as_ref()?.side)),
             sheet,
         };
         let source = ContactSource::OutwardAxis;
@@ -244,30 +235,25 @@ impl SurfaceFilter<'_> {
     /// a flat side goes on beyond a triangle.
     pub(super) fn supporting_contact(
         &self,
-        local: &TrianglePair,
         crossing: &Crossing,
         islands: &mut OverlapIslands,
         clipped: &mut ManifoldPoints,
     ) -> Option<TriangleSurfaceContact> {
-        if !islands.needs_support(self.pair) {
-            return None;
-        }
-        let surfaces = self.surfaces(local);
-        let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(&surfaces, i, feature, axis);
-        let (triangles, is_solid) = (local.corners.each_ref(), solids(&surfaces));
-        let cones = [0, 1].map(|i| self.least_square(&surfaces, i));
+        let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
+        let (triangles, is_solid) = (self.local.corners.each_ref(), self.are_solid());
+        let cones = [0, 1].map(|i| self.least_square(i));
         let agrees = islands.agrees(self.pair);
         let contact = outward_penetration(triangles, is_solid, cones, ends, agrees, clipped)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
-        if !is_overlap || !is_shallow && !self.is_far_inside(local, &contact) {
+        if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {
             return None;
         }
         // Between two rows of triangles of a flat side neither has an overlap as deep as that side.
         let most = (contact.distance + crossing.greatest).max(0.0);
         let side_beyond = |i: usize, direction: DVec3| {
             let direction = self.in_frame(i, direction);
-            surfaces[i].as_ref().map_or(0.0, |s| s.side_beyond(self.pair[i], direction, most))
+            self.surfaces[i].as_ref().map_or(0.0, |s| s.side_beyond(self.pair[i], direction, most))
         };
         let beyond = if islands.has_no_support(self.pair) {
             side_beyond(0, contact.normal) + side_beyond(1, -contact.normal)
@@ -278,40 +264,44 @@ impl SurfaceFilter<'_> {
         Some(TriangleSurfaceContact { contact, source: ContactSource::OutwardAxis })
     }
 
+    fn are_solid(&self) -> [bool; 2] {
+        [0, 1].map(|i| self.surfaces[i].as_ref().is_some_and(Around::is_solid))
+    }
+
+    /// Returns true if the triangles are within a distance, in their sizes.
+    pub(super) fn is_touching(&self, contact: &TriangleContact, distance: f64) -> bool {
+        let [t1, t2] = &self.local.corners;
+        contact.distance.abs() < distance * (size(t1) + size(t2))
+    }
+
     /// Returns true if edges or vertices are far from each other, and may pass each other.
-    fn passes_by(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
+    fn passes_by(&self, contact: &TriangleContact) -> bool {
         let TriangleContact { normal, distance, features, .. } = *contact;
         distance > DISTANT * self.shapes.filter_unit()
             && ![features.feature1(), features.feature2()].contains(&Feature::Face)
-            && local.corners.iter().any(|corners| leans(corners, normal))
+            && self.local.corners.iter().any(|corners| leans(corners, normal))
     }
 
     /// Returns a contact at a border with the normal of the face, if the other shape is all on one side
     /// of the face.
-    fn upright_at_border(
-        &self,
-        surfaces: &Surfaces<'_>,
-        i: usize,
-        local: &TrianglePair,
-        contact: &TriangleContact,
-    ) -> Option<TriangleContact> {
-        let TriangleContact { normal, features, point1, point2, .. } = *contact;
-        let feature = [features.feature1(), features.feature2()][i];
+    fn upright_at_border(&self, i: usize, contact: &TriangleContact) -> Option<TriangleContact> {
+        let TriangleContact { normal, point1, point2, .. } = *contact;
+        let feature = feature(contact, i);
         if feature == Feature::Face {
             return None;
         }
-        let [a, b, c] = local.corners[i];
+        let [a, b, c] = self.local.corners[i];
         let up = (b - a).cross(c - a).try_normalize()?;
         let own = [normal, -normal][i];
-        let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center(), local);
+        let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center());
         let up = if up.dot(middle - a) < 0.0 { -up } else { up };
         let cosine = up.dot(own);
-        let place = self.place(i, local, contact);
-        if cosine > UPRIGHT || !surfaces[i].as_ref()?.is_border(self.pair[i], feature, place) {
+        let place = self.place(i, contact);
+        if cosine > UPRIGHT || !self.surfaces[i].as_ref()?.is_border(self.pair[i], feature, place) {
             return None;
         }
         let lowest = self.shapes[1 - i].lowest(self.in_frame(1 - i, up).as_vec3())?;
-        let lowest = f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO, local) - a);
+        let lowest = f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO) - a);
         if lowest < -LIP * self.shapes.filter_unit() {
             return None;
         }
@@ -326,26 +316,26 @@ impl SurfaceFilter<'_> {
 
     /// Returns true if a solid ends between the points of a contact that leads into both. If both solids do, they are thin
     /// walls, and their outer sides have the contact.
-    fn ends_between(&self, i: usize, local: &TrianglePair, contact: &TriangleContact) -> bool {
+    fn ends_between(&self, i: usize, contact: &TriangleContact) -> bool {
         let TriangleContact { normal, distance, .. } = *contact;
         let way = self.in_frame(i, [normal, -normal][i]);
-        let start = self.place(i, local, contact) + WITHIN * distance * way;
+        let start = self.place(i, contact) + WITHIN * distance * way;
         let ray = Ray::new(start.as_vec3(), way.as_vec3());
         let most = ((1.0 - 2.0 * WITHIN) * distance) as Real;
         self.shapes[i].ends_within(&ray, most)
     }
 
     /// Returns the point of a contact on a shape, in the frame of the shape.
-    fn place(&self, i: usize, local: &TrianglePair, contact: &TriangleContact) -> DVec3 {
+    fn place(&self, i: usize, contact: &TriangleContact) -> DVec3 {
         match i {
-            0 => local.origin.as_dvec3() + contact.point1,
-            _ => self.shapes.pose.placement12.to_frame2(contact.point2, local.origin),
+            0 => self.local.origin.as_dvec3() + contact.point1,
+            _ => self.shapes.pose.placement12.to_frame2(contact.point2, self.local.origin),
         }
     }
 
     /// Returns a point of a shape in frame 1, from the origin of two triangles.
-    fn in_local(&self, i: usize, point: Vec3, local: &TrianglePair) -> DVec3 {
-        in_local(&self.shapes.pose.placement12, i, point, local.origin)
+    fn in_local(&self, i: usize, point: Vec3) -> DVec3 {
+        in_local(&self.shapes.pose.placement12, i, point, self.local.origin)
     }
 
     /// Returns a direction of frame 1 in the frame of a shape.
@@ -355,55 +345,42 @@ impl SurfaceFilter<'_> {
 
     /// Returns true if the point of a contact on a shape is a local minimum of the distance.
     #[inline(always)]
-    fn is_minimum(
-        &self,
-        surfaces: &Surfaces<'_>,
-        i: usize,
-        local: &TrianglePair,
-        contact: &TriangleContact,
-    ) -> bool {
-        let TriangleContact { normal, features, .. } = *contact;
-        let features = [features.feature1(), features.feature2()];
-        let direction = self.in_frame(i, [normal, -normal][i]);
-        let to = Some((self.place(i, local, contact), features[1 - i]));
+    fn is_minimum(&self, i: usize, contact: &TriangleContact) -> bool {
+        let direction = self.in_frame(i, [contact.normal, -contact.normal][i]);
+        let to = Some((self.place(i, contact), feature(contact, 1 - i)));
         let is_minimum = |surface: &Around<_>| {
-            surface.is_local_minimum(self.pair[i], features[i], direction, to)
+            surface.is_local_minimum(self.pair[i], feature(contact, i), direction, to)
         };
-        surfaces[i].as_ref().is_none_or(is_minimum)
+        self.surfaces[i].as_ref().is_none_or(is_minimum)
     }
 
     /// Returns true if the normal of a contact points into a shape.
-    fn points_inside(
-        &self,
-        surfaces: &Surfaces<'_>,
-        i: usize,
-        TriangleContact { normal, features, .. }: &TriangleContact,
-    ) -> bool {
-        let feature = [features.feature1(), features.feature2()][i];
-        let direction = self.in_frame(i, [*normal, -*normal][i]);
-        let points_inside =
-            |surface: &Around<_>| surface.points_inside(self.pair[i], feature, direction);
-        surfaces[i].as_ref().is_some_and(points_inside)
+    fn points_inside(&self, i: usize, contact: &TriangleContact) -> bool {
+        let direction = self.in_frame(i, [contact.normal, -contact.normal][i]);
+        let points_inside = |surface: &Around<_>| {
+            surface.points_inside(self.pair[i], feature(contact, i), direction)
+        };
+        self.surfaces[i].as_ref().is_some_and(points_inside)
     }
 
     /// Returns true if a surface ends at a feature, seen along an axis.
     #[inline(always)]
-    fn ends(&self, surfaces: &Surfaces<'_>, i: usize, feature: Feature, axis: DVec3) -> bool {
+    fn ends(&self, i: usize, feature: Feature, axis: DVec3) -> bool {
         let axis = self.in_frame(i, axis);
         let ends =
             |surface: &Around<_>| surface.is_local_minimum(self.pair[i], feature, axis, None);
-        surfaces[i].as_ref().is_none_or(ends)
+        self.surfaces[i].as_ref().is_none_or(ends)
     }
 
     /// Returns the square of the least cosine between the normal of a triangle and an axis along which its surface may end.
-    fn least_square(&self, surfaces: &Surfaces<'_>, i: usize) -> f64 {
-        let Some(Around { facets, .. }) = &surfaces[i] else { return 0.0 };
+    fn least_square(&self, i: usize) -> f64 {
+        let Some(Around { facets, .. }) = &self.surfaces[i] else { return 0.0 };
         facets.cones(self.pair[i]).least_square(false)
     }
 
     /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller sheet,
     /// is. `None` for two solids, and if the solid is larger than the sheet.
-    fn sheet_side(&self, is_solid: [bool; 2], local: &TrianglePair) -> Option<SheetSide> {
+    fn sheet_side(&self, is_solid: [bool; 2]) -> Option<SheetSide> {
         if is_solid == [true; 2] {
             return None;
         }
@@ -426,7 +403,7 @@ impl SurfaceFilter<'_> {
         if smaller == Some(1 - solid) {
             return None;
         }
-        let (normal, height) = self.middle_over(1 - solid, local);
+        let (normal, height) = self.middle_over(1 - solid);
         let (away, own) = match solid {
             0 => (-normal, normal),
             _ => (normal, self.shapes.pose.placement12.inverse * normal),
@@ -437,10 +414,11 @@ impl SurfaceFilter<'_> {
 
     /// Returns true if a contact is deep since a point is far inside, not since this triangle is on
     /// the far side of its body.
-    fn is_far_inside(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
+    fn is_far_inside(&self, contact: &TriangleContact) -> bool {
         let within = (-contact.distance / SHALLOW) as Real;
-        let point1 = (local.origin.as_dvec3() + contact.point2).as_vec3();
-        let point2 = self.shapes.pose.placement12.to_frame2(contact.point1, local.origin).as_vec3();
+        let point1 = (self.local.origin.as_dvec3() + contact.point2).as_vec3();
+        let point2 =
+            self.shapes.pose.placement12.to_frame2(contact.point1, self.local.origin).as_vec3();
         (0..2).zip([point1, point2]).any(|(i, point)| {
             self.shapes[i].nearest(point).is_some_and(|(nearest, behind)| {
                 behind >= BEHIND && nearest.distance(point) > within
@@ -449,8 +427,9 @@ impl SurfaceFilter<'_> {
     }
 }
 
-fn solids(surfaces: &Surfaces<'_>) -> [bool; 2] {
-    [0, 1].map(|i| surfaces[i].as_ref().is_some_and(Around::is_solid))
+/// Returns the feature of a contact on shape 1 (0) or 2 (1).
+fn feature(TriangleContact { features, .. }: &TriangleContact, i: usize) -> Feature {
+    [features.feature1(), features.feature2()][i]
 }
 
 /// Returns the sign with which the normal of a triangle leads out of the body; `None` for a sheet.
@@ -471,12 +450,6 @@ fn leans([a, b, c]: &[DVec3; 3], direction: DVec3) -> bool {
 /// Distance, in sizes of the triangles, that rounding of poses to f32 may open between triangles that
 /// touch.
 pub(super) const NEARLY_TOUCHING: f64 = 1.0e-6;
-
-/// Returns true if triangles are within a distance, in their sizes.
-pub(super) fn is_touching(local: &TrianglePair, contact: &TriangleContact, distance: f64) -> bool {
-    let [t1, t2] = &local.corners;
-    contact.distance.abs() < distance * (size(t1) + size(t2))
-}
 
 /// Returns the longer of two sides.
 fn size([a, b, c]: &[DVec3; 3]) -> f64 {

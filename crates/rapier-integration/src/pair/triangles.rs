@@ -27,7 +27,7 @@ use super::pose::PairPose;
 use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery};
 use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
-use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict, is_touching};
+use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict};
 use super::triangle_contacts::{constrained_normal, write_points};
 use super::triangle_shapes::{
     ContactSource, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
@@ -247,8 +247,9 @@ impl TriangleQuery<'_> {
         let Some(local) = self.shapes.local(pair) else { return };
         let Some(contact) = touch(&local, candidate, limits) else { return };
         first.is_near = true;
-        match self.filter(pair).apply(&local, contact, &mut first.clipped) {
-            Verdict::None if is_touching(&local, &contact, NEARLY_TOUCHING) => {
+        let filter = SurfaceFilter::new(&self.shapes, pair, &local, true);
+        match filter.apply(contact, &mut first.clipped) {
+            Verdict::None if filter.is_touching(&contact, NEARLY_TOUCHING) => {
                 first.islands.touching.push(pair);
             }
             Verdict::None => {}
@@ -264,8 +265,15 @@ impl TriangleQuery<'_> {
         }
     }
 
-    fn filter(&self, pair: [u32; 2]) -> SurfaceFilter<'_> {
-        SurfaceFilter { shapes: &self.shapes, pair, may_pass: true }
+    /// Calls `then` with the filter of two triangles, if these exist. `may_pass`: their edges and vertices may pass each other.
+    fn with_filter<T>(
+        &self,
+        pair: [u32; 2],
+        may_pass: bool,
+        then: impl FnOnce(&SurfaceFilter<'_>) -> T,
+    ) -> Option<T> {
+        let local = self.shapes.local(pair)?;
+        Some(then(&SurfaceFilter::new(&self.shapes, pair, &local, may_pass)))
     }
 
     /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.
@@ -279,9 +287,8 @@ impl TriangleQuery<'_> {
         let nearest = distances.fold(f64::INFINITY, f64::min);
         let is_nearest = |contact: &TriangleContact| contact.distance < NEARER * nearest;
         for &(pair, contact) in passing.iter().filter(|(_, contact)| is_nearest(contact)) {
-            let Some(local) = self.shapes.local(pair) else { continue };
-            let filter = SurfaceFilter { may_pass: false, ..self.filter(pair) };
-            if let Verdict::Contact(hit, border) = filter.apply(&local, contact, clipped) {
+            let verdict = self.with_filter(pair, false, |filter| filter.apply(contact, clipped));
+            if let Some(Verdict::Contact(hit, border)) = verdict {
                 contacts.push((pair, hit));
                 upright.extend(border.map(|border| (pair, border)));
             }
@@ -309,9 +316,8 @@ impl TriangleQuery<'_> {
             if contact.distance <= reach {
                 return;
             }
-            let Some(local) = self.shapes.local(pair) else { return };
-            let filter = SurfaceFilter { may_pass, ..self.filter(pair) };
-            if let Verdict::Contact(mut hit, upright) = filter.apply(&local, contact, clipped) {
+            let verdict = self.with_filter(pair, may_pass, |filter| filter.apply(contact, clipped));
+            if let Some(Verdict::Contact(mut hit, upright)) = verdict {
                 hit.contact = upright.filter(|_| lead_one_way).unwrap_or(hit.contact);
                 contacts.push((pair, hit));
             }
@@ -338,8 +344,11 @@ impl TriangleQuery<'_> {
         let limit = self.shapes.filter_distance;
         let is_near = |contact: &TriangleContact| contact.distance <= limit;
         if !contacts.iter().any(|(_, hit)| is_near(&hit.contact)) {
-            let is_minimum =
-                |(pair, hit): &TriangleHit| self.filter(*pair).is_minimum_of_larger(&hit.contact);
+            let is_minimum = |(pair, hit): &TriangleHit| {
+                let is_minimum =
+                    |filter: &SurfaceFilter<'_>| filter.is_minimum_of_larger(&hit.contact);
+                self.with_filter(*pair, true, is_minimum) == Some(true)
+            };
             if contacts.iter().any(is_minimum) {
                 contacts.retain(is_minimum);
             }
@@ -347,14 +356,17 @@ impl TriangleQuery<'_> {
         }
         directions.clear();
         for (pair, TriangleSurfaceContact { contact, .. }) in &*contacts {
-            let counts = || is_near(contact) || self.filter(*pair).is_local_minimum(contact);
+            let is_minimum = |filter: &SurfaceFilter<'_>| filter.is_local_minimum(contact);
+            let counts =
+                || is_near(contact) || self.with_filter(*pair, true, is_minimum) == Some(true);
             directions.add_if(contact.normal, counts);
         }
         let is_overlap = !islands.crossings.is_empty();
         contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
+            let leads_inside = |filter: &SurfaceFilter<'_>| filter.leads_inside(contact);
             is_near(contact)
                 || directions.has(contact.normal)
-                    && !(is_overlap && self.filter(*pair).leads_inside(contact))
+                    && !(is_overlap && self.with_filter(*pair, true, leads_inside) == Some(true))
         });
     }
 
@@ -414,10 +426,12 @@ impl TriangleQuery<'_> {
         deep::add_contacts(&self.shapes, islands, contours, contacts);
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
-            let Some(local) = self.shapes.local(crossing.pair) else { continue };
-            let filter = self.filter(crossing.pair);
-            let contact = filter.supporting_contact(&local, &crossing, islands, clipped);
-            contacts.extend(contact.map(|contact| (crossing.pair, contact)));
+            if islands.needs_support(crossing.pair) {
+                let contact = self.with_filter(crossing.pair, true, |filter| {
+                    filter.supporting_contact(&crossing, islands, clipped)
+                });
+                contacts.extend(contact.flatten().map(|contact| (crossing.pair, contact)));
+            }
         }
         // Contacts of contours come first.
         contacts.sort_unstable_by_key(|(pair, hit)| (*pair, hit.source != ContactSource::PushOut));

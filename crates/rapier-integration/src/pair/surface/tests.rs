@@ -52,9 +52,9 @@ fn triangles_beside_each_other_pass_by() {
                 }
                 let contact = contact(t1, t2, f64::from(pose.prediction));
                 let Some(contact) = contact else { continue };
-                let filter = SurfaceFilter { shapes: &shapes, pair, may_pass: true };
+                let filter = SurfaceFilter::new(&shapes, pair, &local, true);
                 let may_be_left_out =
-                    filter.passes_by(&local, &contact) && !filter.is_local_minimum(&contact);
+                    filter.passes_by(&contact) && !filter.is_local_minimum(&contact);
                 let is_found = found.binary_search(&pair).is_ok();
                 assert!(is_found || may_be_left_out, "{pair:?}, {contact:?}");
                 counts[usize::from(is_found)] += 1;
