@@ -164,10 +164,3 @@ impl<S: Default, C> Default for QueryMemory<S, C> {
         }
     }
 }
-
-/// A query under way, and its memory.
-pub(super) struct Running<'r, Q: PairQuery> {
-    pub(super) query: &'r mut Q,
-    pub(super) scratch: &'r mut Q::Scratch,
-    pub(super) points: &'r mut ContactPoints,
-}

@@ -12,8 +12,8 @@ use std::sync::Arc;
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use sbbk_core::traverse::{DescentCounts, SlackPlan};
 
-use super::query::{Limits, Pair, PairQuery, QueryMemory, Running};
-use super::state::{PairState, state_in};
+use super::query::{Limits, Pair, PairQuery, QueryMemory};
+use super::state::{CandidateMemory, PairState, state_in};
 use super::write::{Writer, write_every, write_patches};
 use crate::mesh::MeshStore;
 
@@ -55,40 +55,46 @@ where
     }
     memory.begin();
     let mut lent = P::Query::memory().take().unwrap_or_default();
-    let QueryMemory { scratch, contacts, reduction, points, demand } = &mut *lent;
-    contacts.clear();
-    let mut outcome = QueryOutcome::Descended;
-    if query.contacts_without_candidates(counts, scratch, contacts) {
-        memory.forget();
-    } else {
-        let (moving, reach) = (query.moving(), query.reach());
-        let slack = &mut memory.slack;
-        let margin = match slack.plan(moving.ball, moving.placement, reach, P::Query::SLACK) {
-            SlackPlan::Reuse { margin, .. } => {
-                outcome = QueryOutcome::Reused;
-                margin
-            }
-            SlackPlan::Descend { margin, .. } => {
-                memory.replace(|found| query.descend(margin, counts, scratch, found));
-                margin
-            }
-        };
-        let (reach, margin) = (f64::from(reach), f64::from(margin));
-        let limits = Limits { reach, margin, travel: memory.slack.travel() };
-        query.contacts(&mut memory.candidates, limits, scratch, contacts);
-    }
-    let plan = query.reduction(contacts);
+    let outcome = update_contacts(&mut query, memory, counts, &mut lent);
+    let plan = query.reduction(&lent.contacts);
     let had_patches = memory.has_patches.replace(plan.is_some());
     let mut writer = Writer::begin(manifolds, had_patches);
-    let running = Running { query: &mut query, scratch, points };
     if let Some(plan) = plan {
-        write_patches(running, contacts, plan, reduction, &mut writer);
+        write_patches(&mut query, &mut lent, plan, &mut writer);
     } else {
-        write_every(running, contacts, &mut writer);
+        write_every(&mut query, &mut lent, &mut writer);
     }
     writer.end();
-    let is_too_large = demand.update(contacts.len()).is_some_and(|limit| limit >= LEAST_KEPT);
+    let limit = lent.demand.update(lent.contacts.len());
+    let is_too_large = limit.is_some_and(|limit| limit >= LEAST_KEPT);
     P::Query::memory().set((!is_too_large).then_some(lent));
     memory.end(query.pose(), manifolds.len());
+    outcome
+}
+
+/// Replaces the contacts in the memory of a thread by those of a query.
+fn update_contacts<Q: PairQuery>(
+    query: &mut Q,
+    memory: &mut CandidateMemory<Q::Hint>,
+    counts: &mut DescentCounts,
+    QueryMemory { scratch, contacts, .. }: &mut QueryMemory<Q::Scratch, Q::Contact>,
+) -> QueryOutcome {
+    contacts.clear();
+    if query.contacts_without_candidates(counts, scratch, contacts) {
+        memory.forget();
+        return QueryOutcome::Descended;
+    }
+    let (moving, reach) = (query.moving(), query.reach());
+    let plan = memory.slack.plan(moving.ball, moving.placement, reach, Q::SLACK);
+    let (outcome, margin) = match plan {
+        SlackPlan::Reuse { margin, .. } => (QueryOutcome::Reused, margin),
+        SlackPlan::Descend { margin, .. } => {
+            memory.replace(|found| query.descend(margin, counts, scratch, found));
+            (QueryOutcome::Descended, margin)
+        }
+    };
+    let (reach, margin) = (f64::from(reach), f64::from(margin));
+    let limits = Limits { reach, margin, travel: memory.slack.travel() };
+    query.contacts(&mut memory.candidates, limits, scratch, contacts);
     outcome
 }

@@ -5,7 +5,6 @@
 
 use std::any::Any;
 use std::cell::Cell;
-use std::cmp::Ordering;
 use std::ops::Range;
 
 use arrayvec::ArrayVec;
@@ -14,7 +13,7 @@ use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
-use super::query::{ContactList, ContactPoints, PairQuery, Running};
+use super::query::{ContactPoints, PairQuery, QueryMemory};
 use super::reduce::{MOST_POINTS, Member, PatchPlan, PatchPoint, Reduction};
 use super::state::HighWaterMark;
 
@@ -159,14 +158,15 @@ fn subshapes_of<M, C>(manifold: &ContactManifold<M, C>) -> [u32; 2] {
 
 /// Writes a manifold for each contact, in the order of subshapes.
 pub(super) fn write_every<Q, M, C>(
-    Running { query, scratch, points }: Running<'_, Q>,
-    contacts: &ContactList<Q::Contact>,
+    query: &mut Q,
+    memory: &mut QueryMemory<Q::Scratch, Q::Contact>,
     writer: &mut Writer<'_, M, C>,
 ) where
     Q: PairQuery,
     M: Default + 'static,
     C: Default + Copy + 'static,
 {
+    let QueryMemory { scratch, contacts, points, .. } = memory;
     let were_patches = writer.had_patches == Some(true);
     if were_patches {
         writer.list_old_points();
@@ -176,42 +176,45 @@ pub(super) fn write_every<Q, M, C>(
         writer.manifolds.sort_by_key(subshapes_of);
     }
     let mut old = 0;
-    for contact in contacts {
+    for contact in &*contacts {
         query.points(contact, scratch, points);
         if points.points.is_empty() {
             continue;
         }
-        let order = loop {
-            let next = writer.manifolds.get(old).map(subshapes_of);
-            let order = next.map_or(Ordering::Greater, |next| next.cmp(&contact.0));
-            if order != Ordering::Less {
-                break order;
-            }
+        while writer.manifolds.get(old).is_some_and(|next| subshapes_of(next) < contact.0) {
             writer.retire(old);
             old += 1;
-        };
-        let write = |pool: &mut Pool<M, C>, manifold: &mut ContactManifold<M, C>| {
-            write_points(points, &mut pool.previous_points, manifold);
-            let [pose1, pose2] = points.poses;
-            manifold.set_subshape_pos1(pose1);
-            manifold.set_subshape_pos2(pose2);
-            if were_patches {
-                take_data(manifold, &pool.old_points);
-            }
-        };
-        if order == Ordering::Equal {
-            write(&mut writer.pool, &mut writer.manifolds[old]);
+        }
+        if writer.manifolds.get(old).is_some_and(|next| subshapes_of(next) == contact.0) {
+            write_contact(points, were_patches, &mut writer.pool, &mut writer.manifolds[old]);
             writer.keep_old(old);
             old += 1;
         } else {
             let mut manifold = writer.take_spare();
             [manifold.subshape1, manifold.subshape2] = contact.0;
-            write(&mut writer.pool, &mut manifold);
+            write_contact(points, were_patches, &mut writer.pool, &mut manifold);
             writer.keep_new(manifold);
         }
     }
     for rest in old..writer.manifolds.len() {
         writer.retire(rest);
+    }
+}
+
+/// Replaces the points and the poses of a manifold.
+#[inline(always)]
+fn write_contact<M, C: Default + Copy>(
+    points: &ContactPoints,
+    were_patches: bool,
+    pool: &mut Pool<M, C>,
+    manifold: &mut ContactManifold<M, C>,
+) {
+    write_points(points, &mut pool.previous_points, manifold);
+    let [pose1, pose2] = points.poses;
+    manifold.set_subshape_pos1(pose1);
+    manifold.set_subshape_pos2(pose2);
+    if were_patches {
+        take_data(manifold, &pool.old_points);
     }
 }
 
@@ -265,19 +268,18 @@ fn take_data<M, C: Default + Copy>(manifold: &mut ContactManifold<M, C>, old: &[
 /// Contacts are chosen before their points are made, then points are chosen. Patches and points
 /// keep the data of similar ones of the last query.
 pub(super) fn write_patches<Q, M, C>(
-    mut running: Running<'_, Q>,
-    contacts: &ContactList<Q::Contact>,
+    query: &mut Q,
+    memory: &mut QueryMemory<Q::Scratch, Q::Contact>,
     plan: PatchPlan,
-    reduction: &mut Reduction,
     writer: &mut Writer<'_, M, C>,
 ) where
     Q: PairQuery,
     M: Default + 'static,
     C: Default + Copy + 'static,
 {
-    let Running { query, scratch, points } = &mut running;
+    let QueryMemory { scratch, contacts, reduction, points, .. } = memory;
     reduction.members.clear();
-    reduction.members.extend((0..).zip(contacts).filter_map(|(index, contact)| {
+    reduction.members.extend((0..).zip(&*contacts).filter_map(|(index, contact)| {
         let summary = query.summary(contact, scratch, points)?;
         Some(Member { summary, contact: index, patch: 0 })
     }));
@@ -292,7 +294,7 @@ pub(super) fn write_patches<Q, M, C>(
             let contact = members[member].contact;
             let of = &contacts[contact as usize];
             query.points(of, scratch, points);
-            let ContactPoints { normals, poses, .. } = **points;
+            let ContactPoints { normals, poses, .. } = *points;
             patch_points.extend(points.points.iter().map(|&point| PatchPoint {
                 point: named(point, of.0),
                 contact,
