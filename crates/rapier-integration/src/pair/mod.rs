@@ -5,7 +5,6 @@
 mod borders;
 mod bvh_descent;
 mod chunks;
-mod contour;
 mod convex;
 mod deep;
 mod descents;
