@@ -1,3 +1,4 @@
+use std::hash::BuildHasher;
 use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
@@ -5,10 +6,10 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
 use parry3d::query::PointQuery;
 use parry3d::shape::{HeightField, HeightFieldCellStatus, Triangle};
+use rustc_hash::FxBuildHasher;
 use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldTriangle, HeightGrid};
 use sbbk_core::surface::Facets;
-use xxhash_rust::xxh3::xxh3_64;
 
 use crate::mesh::box_between;
 
@@ -212,18 +213,13 @@ impl FieldToken {
 
     pub(super) fn of(field: &HeightField) -> Self {
         let (heights, statuses) = (field.heights().data(), field.cells_statuses().data());
-        let mut words = [0u64; 6 + Self::SAMPLES];
-        let bits = |x: f32| u64::from(x.to_bits());
-        let scale = field.scale();
-        words[0] = heights.as_ptr() as u64;
-        words[1] = statuses.as_ptr() as u64;
-        words[2] = field.nrows() as u64 | (field.ncols() as u64) << 32;
-        words[3] = bits(scale.x) | bits(scale.y) << 32;
-        words[4] = bits(scale.z) | u64::from(field.flags().bits()) << 32;
-        words[5] = bits(field.root_aabb().mins.y) | bits(field.root_aabb().maxs.y) << 32;
-        for (i, word) in words[6..].iter_mut().enumerate() {
-            *word = bits(heights[i * heights.len() / Self::SAMPLES]);
-        }
-        Self(xxh3_64(bytemuck::cast_slice(&words)))
+        let addresses = [heights.as_ptr().addr(), statuses.as_ptr().addr()];
+        let sizes = [field.nrows(), field.ncols()];
+        let (scale, ends) = (field.scale(), field.root_aabb());
+        let numbers = [scale.x, scale.y, scale.z, ends.mins.y, ends.maxs.y];
+        let samples: [f32; Self::SAMPLES] =
+            std::array::from_fn(|i| heights[i * heights.len() / Self::SAMPLES]);
+        let bits = (numbers.map(f32::to_bits), samples.map(f32::to_bits));
+        Self(FxBuildHasher.hash_one((addresses, sizes, field.flags().bits(), bits)))
     }
 }
