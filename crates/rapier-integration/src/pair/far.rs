@@ -12,7 +12,7 @@ use parry3d::math::Real;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
 
 use super::triangle_contacts::in_local;
-use super::triangle_shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
+use super::triangle_shapes::{TriangleHit, TriangleShapes, TriangleSurfaceContact};
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
@@ -107,7 +107,7 @@ impl FarSearch<'_> {
         pair[1 - i] = self.0[1 - i].nearest_triangle(point.as_vec3(), limit as Real)?;
         let local = self.0.local(pair)?;
         let [t1, t2] = &local.corners;
-        Some(hit(pair, contact(t1, t2, limit)?))
+        Some((pair, TriangleSurfaceContact::of_triangles(contact(t1, t2, limit)?)))
     }
 
     /// Returns the contact of a point and the nearest triangle of the other shape. The point is in the frame of
@@ -124,14 +124,11 @@ impl FarSearch<'_> {
         let mut features = [contact.features.feature1(), contact.features.feature2()];
         features[i] = Feature::Vertex((half_edge % 3) as u8);
         let features = FeaturePair::new(features[0], features[1]);
-        Some(hit(pair, TriangleContact { features, ..contact }))
+        let contact = TriangleContact { features, ..contact };
+        Some((pair, TriangleSurfaceContact::of_triangles(contact)))
     }
 }
 
 fn distance((_, hit): &TriangleHit) -> f64 {
     hit.contact.distance
-}
-
-fn hit(pair: [u32; 2], contact: TriangleContact) -> TriangleHit {
-    (pair, TriangleSurfaceContact { contact, source: ContactSource::Triangles })
 }

@@ -110,43 +110,46 @@ impl<'a> SurfaceFilter<'a> {
     /// First pass. `clipped` is memory.
     #[inline(always)]
     pub(super) fn apply(&self, contact: TriangleContact, clipped: &mut ManifoldPoints) -> Verdict {
-        let of_triangles = TriangleSurfaceContact { contact, source: ContactSource::Triangles };
+        let of_triangles = TriangleSurfaceContact::of_triangles(contact);
         if let [None, None] = self.surfaces {
             return Verdict::Contact(of_triangles, None);
         }
         if self.surfaces.iter().flatten().any(|surface| surface.side == Side::Inner) {
             return Verdict::None;
         }
-        let is_solid = self.are_solid();
-        let has_solid = is_solid[0] || is_solid[1];
-        let is_crossing = contact.features.is_crossing();
         if contact.distance > self.shapes.filter_distance {
             // The smaller shape may turn before the two meet. A contact from within the larger one would hold it in.
-            let mut larger = self.larger();
-            let leads_inside = larger.any(|i| self.points_inside(i, &contact));
+            let leads_inside = self.larger().any(|i| self.points_inside(i, &contact));
             return if leads_inside { Verdict::None } else { Verdict::Contact(of_triangles, None) };
         }
-        if !is_crossing {
+        if !contact.features.is_crossing() {
             if self.may_pass && self.passes_by(&contact) {
                 return Verdict::Passing;
             }
-            let is_minimum = |i: usize| self.is_minimum(i, &contact);
-            let is_first_minimum = is_minimum(0);
-            if is_first_minimum && is_minimum(1) {
+            let is_first_minimum = self.is_minimum(0, &contact);
+            if is_first_minimum && self.is_minimum(1, &contact) {
                 let upright = (0..2).find_map(|i| self.upright_at_border(i, &contact));
                 return Verdict::Contact(of_triangles, upright);
             }
-            // A local minimum does not point inside: spares the test.
-            let points_inside = |i: usize| self.points_inside(i, &contact);
-            let has_passed = has_solid
-                && !(is_solid[0] && is_first_minimum)
-                && (0..2).all(|i| !is_solid[i] || points_inside(i));
-            let ends_between = |i: usize| is_solid[i] && self.ends_between(i, &contact);
-            if !has_passed || ends_between(0) && ends_between(1) {
+            if !self.have_passed(is_first_minimum, &contact) {
                 return Verdict::None;
             }
         }
         self.crossing(&contact, clipped)
+    }
+
+    /// Returns true if triangles that are apart have passed each other in solids. `is_first_minimum`: the contact is a local
+    /// minimum on shape 1.
+    #[inline(always)]
+    fn have_passed(&self, is_first_minimum: bool, contact: &TriangleContact) -> bool {
+        let is_solid = self.are_solid();
+        // A local minimum does not point inside: spares the test.
+        let points_inside = |i: usize| self.points_inside(i, contact);
+        let has_passed = (is_solid[0] || is_solid[1])
+            && !(is_solid[0] && is_first_minimum)
+            && (0..2).all(|i| !is_solid[i] || points_inside(i));
+        let ends_between = |i: usize| is_solid[i] && self.ends_between(i, contact);
+        has_passed && !(ends_between(0) && ends_between(1))
     }
 
     /// Returns true if both points of a contact are local minima of the distance.

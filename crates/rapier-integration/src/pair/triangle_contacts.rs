@@ -16,7 +16,7 @@ use sbbk_core::traverse::Placement;
 
 use super::pose::PairPose;
 use super::query::ContactPoints;
-use super::triangle_shapes::Cones;
+use super::triangle_shapes::{Cones, Hint};
 use super::write::write_points as write_to_manifold;
 
 /// Returns a point of a shape in frame 1, from an origin there.
@@ -24,6 +24,19 @@ pub(super) fn in_local(placement: &Placement, i: usize, point: Vector, origin: V
     match i {
         0 => point.as_dvec3() - origin.as_dvec3(),
         _ => placement.to_frame1(point, origin),
+    }
+}
+
+/// Returns the contact of two triangles within a distance. `hint` has the features to be tried first.
+#[inline(always)]
+pub(super) fn contact_of(
+    TrianglePair { corners: [t1, t2], .. }: &TrianglePair,
+    within: f64,
+    hint: Hint,
+) -> Option<TriangleContact> {
+    match hint {
+        Some(features) => contact_from(t1, t2, within, features),
+        None => contact(t1, t2, within),
     }
 }
 
@@ -134,11 +147,7 @@ impl<C: Default + Copy> TriangleContacts<C> {
         let triangles = TrianglePair::new(&pose.placement12, corners1, corners2);
         let mut clipped = ManifoldPoints::new();
         let [t1, t2] = &triangles.corners;
-        let within = f64::from(prediction);
-        let contact = match self.features {
-            Some(features) => contact_from(t1, t2, within, features),
-            None => contact(t1, t2, within),
-        };
+        let contact = contact_of(&triangles, f64::from(prediction), self.features);
         self.features = contact.map(|contact| contact.features);
         let points = std::mem::take(&mut self.points);
         let mut points = ContactPoints { points, ..ContactPoints::default() };

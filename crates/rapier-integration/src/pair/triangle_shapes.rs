@@ -145,6 +145,11 @@ pub(crate) struct TriangleSurfaceContact {
 }
 
 impl TriangleSurfaceContact {
+    /// A contact of two triangles.
+    pub(super) fn of_triangles(contact: TriangleContact) -> Self {
+        Self { contact, source: ContactSource::Triangles }
+    }
+
     /// Returns a contact that pushes shapes apart along a normal, at points that belong to no feature.
     pub(super) fn push_out(normal: DVec3, distance: f64, [point1, point2]: [DVec3; 2]) -> Self {
         let features = FeaturePair::new(Feature::Face, Feature::Face);

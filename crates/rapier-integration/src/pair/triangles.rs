@@ -9,9 +9,7 @@ use std::thread::LocalKey;
 
 use glamx::DVec3;
 use parry3d::math::Real;
-use sbbk_core::contact::{
-    ManifoldPoints, TriangleContact, clip, contact, contact_from, push_closest,
-};
+use sbbk_core::contact::{ManifoldPoints, TriangleContact, clip, push_closest};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
@@ -28,7 +26,7 @@ use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery
 use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
 use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict};
-use super::triangle_contacts::{constrained_normal, write_points};
+use super::triangle_contacts::{constrained_normal, contact_of, write_points};
 use super::triangle_shapes::{
     ContactSource, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
 };
@@ -392,9 +390,8 @@ impl TriangleQuery<'_> {
     /// Returns the contact of two triangles for surfaces that meet without a contact of their own.
     fn contact_of_triangles(&self, pair: [u32; 2]) -> Option<TriangleHit> {
         let local = self.shapes.local(pair)?;
-        let [t1, t2] = &local.corners;
-        let contact = contact(t1, t2, f64::from(self.pose().prediction))?;
-        Some((pair, TriangleSurfaceContact { contact, source: ContactSource::Triangles }))
+        let contact = contact_of(&local, f64::from(self.pose().prediction), None)?;
+        Some((pair, TriangleSurfaceContact::of_triangles(contact)))
     }
 
     /// Returns the overlap of two triangles along a direction in which triangle 2 leaves.
@@ -464,11 +461,7 @@ fn touch(
     candidate: &mut Candidate<Hint>,
     Limits { reach, margin, travel }: Limits,
 ) -> Option<TriangleContact> {
-    let [t1, t2] = &local.corners;
-    let contact = match candidate.hint {
-        Some(hint) => contact_from(t1, t2, margin, hint),
-        None => contact(t1, t2, margin),
-    };
+    let contact = contact_of(local, margin, candidate.hint);
     candidate.clear = contact.map_or(margin, |contact| contact.distance) + travel;
     let contact = contact?;
     candidate.hint = Some(contact.features);
