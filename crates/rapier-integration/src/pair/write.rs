@@ -121,6 +121,19 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         self.pool.spare.pop().unwrap_or_default()
     }
 
+    /// Takes the host's manifold of a part with the most similar normal; an empty one if none is similar.
+    fn take_like(&mut self, part: u32, normal: Vec3) -> ContactManifold<M, C> {
+        // Manifolds that were taken are empty and have a normal of zero.
+        let olds = of_part(&self.pool.old_parts, part, |(part, _)| *part);
+        let likes = olds.map(|i| self.pool.old_parts[i].1 as usize);
+        let likes = likes.map(|old| (old, self.manifolds[old].local_n1.dot(normal)));
+        let likes = likes.filter(|(_, like)| *like >= LIKE_NORMAL);
+        match likes.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
+            Some((old, _)) => std::mem::take(&mut self.manifolds[old]),
+            None => self.take_spare(),
+        }
+    }
+
     /// Recycles the manifold at an index of the host's list.
     fn retire(&mut self, index: usize) {
         let mut manifold = std::mem::take(&mut self.manifolds[index]);
@@ -338,15 +351,7 @@ fn write_patch<M, C>(
         points[deepest];
     let subshapes = subshapes(contact as usize);
     let part = part_at([&pose1, &pose2].map(Option::is_some), subshapes);
-    // Manifolds that were taken are empty and have a normal of zero.
-    let olds = of_part(&writer.pool.old_parts, part, |(part, _)| *part);
-    let likes = olds.map(|i| writer.pool.old_parts[i].1 as usize);
-    let likes = likes.map(|old| (old, writer.manifolds[old].local_n1.dot(normal1)));
-    let likes = likes.filter(|(_, like)| *like >= LIKE_NORMAL);
-    let mut manifold = match likes.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
-        Some((old, _)) => std::mem::take(&mut writer.manifolds[old]),
-        None => writer.take_spare(),
-    };
+    let mut manifold = writer.take_like(part, normal1);
     [manifold.subshape1, manifold.subshape2] = subshapes;
     manifold.set_subshape_pos1(pose1);
     manifold.set_subshape_pos2(pose2);
