@@ -11,18 +11,26 @@ use sbbk_core::traverse::DescentCounts;
 
 use super::SbbkDispatcher;
 use crate::TriangleContacts;
-use crate::mesh::{are_near, is_near, may_be_inside};
+use crate::mesh::{MeshView, are_near, is_near, may_be_inside};
 use crate::pair::{
     ConvexPair, Field, MeshPair, MeshPlace, PairPose, Parts, QueryOutcome, ShapeView,
     update_manifolds,
 };
+
+/// Two shapes by the kind of pair that they are.
+enum Kind<'a> {
+    /// Shapes without contacts that need no workspace.
+    Apart,
+    Triangles([ShapeView<'a>; 2]),
+    Convex(MeshView<'a>, Parts<'a>, MeshPlace),
+}
 
 impl SbbkDispatcher {
     /// Updates the manifolds of a pair of shapes, and counts the work. Returns `None` if Parry must answer.
     fn answer<M, C>(
         &self,
         pos12: &Pose,
-        [g1, g2]: [&dyn Shape; 2],
+        shapes: [&dyn Shape; 2],
         prediction: Real,
         counts: &mut DescentCounts,
         manifolds: &mut Vec<ContactManifold<M, C>>,
@@ -36,41 +44,58 @@ impl SbbkDispatcher {
         // A new pair that is apart needs no workspace. A pair with manifolds must keep one: Rapier
         // takes a missing one for a new pair, and keeps pointers to manifolds that are gone.
         let is_new = workspace.is_none() && manifolds.is_empty();
+        let kind = self.kind_of(pos12, shapes, prediction, is_new)?;
+        let pose = || PairPose::new(pos12, prediction);
+        Some(match kind {
+            Kind::Apart => QueryOutcome::Apart,
+            Kind::Triangles(shapes) => {
+                let pair = MeshPair { pose: &pose(), shapes, config };
+                update_manifolds(&pair, store, counts, manifolds, workspace)
+            }
+            Kind::Convex(mesh, parts, mesh_place) => {
+                let pair = ConvexPair { pose: &pose(), mesh, parts, mesh_place, config };
+                update_manifolds(&pair, store, counts, manifolds, workspace)
+            }
+        })
+    }
+
+    /// Returns the kind of pair that two shapes are; `None` if Parry must answer.
+    fn kind_of<'a>(
+        &'a self,
+        pos12: &Pose,
+        [g1, g2]: [&'a dyn Shape; 2],
+        prediction: Real,
+        is_new: bool,
+    ) -> Option<Kind<'a>> {
+        let kinds = &self.config.kinds;
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
-                let meshes = [mesh1, mesh2];
-                if !config.kinds.meshes {
-                    return None;
-                }
-                let may_be_inside = || config.has_surfaces() && may_be_inside(meshes, pos12);
+                let meshes = kinds.meshes.then_some([mesh1, mesh2])?;
+                let may_be_inside = || self.config.has_surfaces() && may_be_inside(meshes, pos12);
                 if is_new && !are_near(meshes, pos12, prediction) && !may_be_inside() {
-                    return Some(QueryOutcome::Apart);
+                    return Some(Kind::Apart);
                 }
-                let shapes = self.view(meshes)?.map(ShapeView::Mesh);
-                let pair = MeshPair { pose: &PairPose::new(pos12, prediction), shapes, config };
-                return Some(update_manifolds(&pair, store, counts, manifolds, workspace));
+                return Some(Kind::Triangles(self.view(meshes)?.map(ShapeView::Mesh)));
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return None,
         };
-        if let Some(field) = other.as_heightfield().filter(|_| config.kinds.height_fields) {
-            let ([mesh], pose) = (self.view([mesh])?, &PairPose::new(pos12, prediction));
-            let shapes = mesh_place.swap([ShapeView::Mesh(mesh), ShapeView::Field(Field(field))]);
-            let pair = MeshPair { pose, shapes, config };
-            return Some(update_manifolds(&pair, store, counts, manifolds, workspace));
+        if let Some(field) = other.as_heightfield().filter(|_| kinds.height_fields) {
+            let [mesh] = self.view([mesh])?;
+            let shapes = [ShapeView::Mesh(mesh), ShapeView::Field(Field(field))];
+            return Some(Kind::Triangles(mesh_place.swap(shapes)));
         }
         let parts = Parts::of(other).filter(|parts| match parts {
-            Parts::One(_) => config.kinds.convex_shapes,
-            Parts::Many(..) => config.kinds.composites,
+            Parts::One(_) => kinds.convex_shapes,
+            Parts::Many(..) => kinds.composites,
         })?;
         let is_near = || is_near(mesh, other, &mesh_place.shape_in_mesh(pos12), prediction);
-        if is_new && !config.leave_solids() && !is_near() {
-            return Some(QueryOutcome::Apart);
+        if is_new && !self.config.leave_solids() && !is_near() {
+            return Some(Kind::Apart);
         }
-        let ([mesh], pose) = (self.view([mesh])?, &PairPose::new(pos12, prediction));
-        let pair = ConvexPair { pose, mesh, parts, mesh_place, config };
-        Some(update_manifolds(&pair, store, counts, manifolds, workspace))
+        let [mesh] = self.view([mesh])?;
+        Some(Kind::Convex(mesh, parts, mesh_place))
     }
 }
 
