@@ -50,12 +50,15 @@ pub(crate) struct Registered {
     shape: Option<SharedShape>,
     content: ContentHash,
     pub(crate) data: Arc<MeshData>,
-    registrations: Arc<AtomicU64>,
+    /// Counts the end of the registration; `None` for a mesh that pairs find without one.
+    registrations: Option<Arc<AtomicU64>>,
 }
 
 impl Drop for Registered {
     fn drop(&mut self) {
-        self.registrations.fetch_add(1, Ordering::Release);
+        if let Some(registrations) = &self.registrations {
+            registrations.fetch_add(1, Ordering::Release);
+        }
     }
 }
 
@@ -91,29 +94,32 @@ impl MeshStore {
             data.analyse(mesh);
             self.contents().keep_recent(&data, self.recent_limit);
         }
-        let registrations = Arc::clone(&self.registrations);
-        let shape = shape.cloned();
-        let registered = Arc::new(Registered { shape, content, data, registrations });
+        let count = mesh.indices().len();
+        // Pairs find small meshes without a registration.
+        let is_listed = shape.is_some() || !is_small(count);
         let RegisteredMeshes { shapes, contents } =
             &mut *self.registered.write().unwrap_or_else(PoisonError::into_inner);
-        let count = mesh.indices().len();
+        if shape.is_some()
+            && let Some(known) = shapes.get(&address(mesh)).and_then(Weak::upgrade)
+        {
+            return Ok(known);
+        }
+        let registrations = is_listed.then(|| Arc::clone(&self.registrations));
+        let shape = shape.cloned();
+        let registered = Arc::new(Registered { shape, content, data, registrations });
         if registered.shape.is_some() {
-            if let Some(known) = shapes.get(&address(mesh)).and_then(Weak::upgrade) {
-                return Ok(known);
-            }
             make_room(shapes);
             shapes.insert(address(mesh), Arc::downgrade(&registered));
-        } else if !is_small(count) {
+        } else if is_listed {
             contents.retain(|_, of_count| {
                 of_count.retain(|known| known.strong_count() > 0);
                 !of_count.is_empty()
             });
             contents.entry(count).or_default().push(Arc::downgrade(&registered));
-        } else {
-            // Pairs find small meshes without a registration.
-            return Ok(registered);
         }
-        self.registrations.fetch_add(1, Ordering::Release);
+        if is_listed {
+            self.registrations.fetch_add(1, Ordering::Release);
+        }
         Ok(registered)
     }
 
@@ -368,6 +374,21 @@ mod tests {
         assert!(store.registered(mesh).is_none() && store.registrations() > count);
         let _again = store.register(mesh, Some(&shape)).unwrap();
         assert!(store.registered(mesh).is_some());
+    }
+
+    /// Would catch a count that rises though nothing changed: every pair of a world then searches again.
+    #[test]
+    fn registrations_that_change_nothing_are_not_counted() {
+        let store = store(0);
+        let shape = SharedShape::new(ball(1.0));
+        let mesh = shape.as_trimesh().unwrap();
+        let first = store.register(mesh, Some(&shape)).unwrap();
+        let count = store.registrations();
+        drop(store.register(mesh, Some(&shape)).unwrap());
+        drop(store.register(&ball(2.0), None).unwrap());
+        assert_eq!(store.registrations(), count);
+        drop(first);
+        assert_eq!(store.registrations(), count + 1);
     }
 
     #[test]
