@@ -11,7 +11,7 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{Ball, Compound, Cuboid, Shape, SharedShape};
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{Pair, Question, cone, fan, shape};
+use crate::support::{Pair, Question, cone, fan, shape, with};
 
 /// A mesh so many times at one place.
 fn layers(of: &Mesh, count: u32) -> Mesh {
@@ -184,6 +184,22 @@ fn time_grows_with_the_triangles() {
         }
     }
     assert!(slow.is_empty(), "{slow:#?}");
+}
+
+/// Would catch push-outs that look at all contacts for each part of a compound.
+#[test]
+fn time_of_push_outs_grows_with_the_parts() {
+    let dispatcher = with(|config| config.convex_leave_solids = true);
+    let [few, many] = [60, 240].map(|rows| {
+        let at = |i: u32| 2.0 * i as f32 / rows as f32 - 1.0;
+        let place = |i: u32| Pose::translation(at(i % rows), 0.0, at(i / rows));
+        let plate = SharedShape::cuboid(0.5 / rows as f32, 0.01, 0.5 / rows as f32);
+        let parts = (0..rows * rows).map(|i| (place(i), plate.clone())).collect();
+        let case = case(&slab(), Compound::new(parts), 0.4 * Vec3::Y);
+        let [first, next] = seconds(&dispatcher, &case, false, 1e-4);
+        first.min(next)
+    });
+    assert!(!is_slow(few, many), "{few:.4} s, {many:.4} s");
 }
 
 /// A step of a part that has fallen a decimetre, along each axis, in units.

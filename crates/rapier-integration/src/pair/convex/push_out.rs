@@ -77,15 +77,23 @@ impl<'q> ConvexQuery<'q> {
             return;
         }
         let ConvexPair { parts, mesh_place, .. } = self.pair;
+        let part_of = |(of, _): &([u32; 2], PartContact)| mesh_place.swap(*of)[1];
+        let (mut depths, mut pushed) = std::mem::take(&mut scratch.push_outs);
+        depths.extend(contacts.iter().map(|hit| (part_of(hit), hit.1.contact.distance)));
+        depths.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         parts.intersecting(&self.pair.mesh_box(0.0), |part| {
-            let is_of_part = |of: [u32; 2]| mesh_place.swap(of)[1] == part;
-            let own = contacts.iter().filter(|(of, _)| is_of_part(*of));
-            let distances = own.map(|(_, contact)| contact.contact.distance);
-            let deepest = distances.fold(f64::INFINITY, f64::min);
-            let Some((triangle, contact)) = self.push_out(part, deepest, scratch) else { return };
-            contacts.retain(|(of, _)| !is_of_part(*of));
-            contacts.push((mesh_place.swap([triangle, part]), contact));
+            let first = depths.get(depths.partition_point(|(of, _)| *of < part));
+            let own = first.filter(|(of, _)| *of == part);
+            let deepest = own.map_or(f64::INFINITY, |(_, distance)| *distance);
+            let push_out = self.push_out(part, deepest, scratch);
+            let named = |(triangle, contact)| (mesh_place.swap([triangle, part]), contact);
+            pushed.extend(push_out.map(named));
         });
+        pushed.sort_unstable_by_key(part_of);
+        contacts.retain(|hit| pushed.binary_search_by_key(&part_of(hit), part_of).is_err());
+        contacts.append(&mut pushed);
+        depths.clear();
+        scratch.push_outs = (depths, pushed);
         contacts.sort_unstable_by_key(|(subshapes, _)| *subshapes);
     }
 }

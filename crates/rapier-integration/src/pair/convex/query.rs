@@ -68,6 +68,8 @@ pub(crate) struct ConvexScratch {
     /// Parts at the pose of the query.
     parts: Vec<Option<PlacedPart>>,
     pub(super) ghosts: GhostContacts,
+    /// Parts with the distances of their contacts, and push-outs.
+    pub(super) push_outs: (Vec<(u32, f64)>, ContactList<PartContact>),
 }
 
 thread_local! {
