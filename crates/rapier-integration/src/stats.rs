@@ -23,8 +23,8 @@ pub struct SbbkStats {
     /// Analysed meshes that are closed with inward normals, and count as sheets. They may be wound the
     /// wrong way.
     pub inside_out: usize,
-    /// Contact queries of two meshes in which a declared solid has pushed out a mesh that is wholly
-    /// inside.
+    /// Contact queries of two meshes in which no contact was left, and a solid has pushed out a mesh
+    /// inside or across its surface.
     pub push_outs: u64,
     /// Meshes that have a tree.
     pub trees: usize,

@@ -21,7 +21,8 @@ use crate::{SbbkConfig, SbbkStats};
 ///
 /// Handles pairs of meshes, and the contacts of a mesh with convex shapes, compounds, polylines and
 /// height fields. All other pairs go to Parry's
-/// [`DefaultQueryDispatcher`](parry3d::query::DefaultQueryDispatcher). Clones share their trees.
+/// [`DefaultQueryDispatcher`](parry3d::query::DefaultQueryDispatcher), except two triangles in
+/// `contact_manifold_convex_convex`. Clones share their trees.
 #[derive(Clone)]
 pub struct SbbkDispatcher {
     config: SbbkConfig,

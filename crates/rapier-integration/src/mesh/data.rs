@@ -8,8 +8,9 @@ use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
 use super::neighbours::{MeshRays, TriangleFlags};
 
-/// Tree and surface of a mesh, for all colliders with equal geometry. Any thread computes a part when
-/// it needs that part, and no thread waits: two threads may compute the same part at once.
+/// Tree and surface of a mesh, for all colliders with equal geometry. A thread computes a part when the
+/// thread needs that part. Two threads may compute one tree or surface at once, and neither waits. Kind,
+/// flags and tips are computed once, and other threads wait for these.
 #[derive(Default)]
 pub(crate) struct MeshData {
     surface: OnceLock<Surface>,
@@ -85,8 +86,8 @@ impl MeshData {
         self.declared_kind().or_else(computed)
     }
 
-    /// Returns the kind of `mesh`, whose data this must be. Takes some thousand rays the first time,
-    /// unless the surface is computed.
+    /// Returns the kind of `mesh`, whose data this must be. Takes up to 4096 rays the first time, and
+    /// more at walls, unless the surface is computed.
     #[inline]
     pub(super) fn kind_of(&self, mesh: &TriMesh) -> SurfaceKind {
         self.kind().unwrap_or_else(|| *self.kind.get_or_init(|| kind(&MeshRays(mesh))))

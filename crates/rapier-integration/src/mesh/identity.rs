@@ -1,4 +1,4 @@
-//! Three notions of "the same mesh".
+//! Four notions of "the same mesh".
 //!
 //! A dispatcher receives a `&TriMesh` without handle or version.
 //!
@@ -6,9 +6,9 @@
 //!   `SharedShape::make_mut` edits in place.
 //! * [`ContentHash`]: 128 bits over vertices, triangles, and the deformable flag. Meshes with equal
 //!   hashes share their data: clones, restored snapshots, the same file loaded twice. A hash takes
-//!   4 µs for 1000 triangles, so each pair computes it once. The hash of a large unregistered
-//!   mesh covers addresses and samples. An edit of few vertices in place may go unnoticed: the
-//!   mesh then keeps its old neighbours and sides.
+//!   4 µs for 1000 triangles, so each pair computes one hash.
+//! * [`ContentHash::of_samples`], for a large unregistered mesh: a hash of addresses and samples. An edit of
+//!   few vertices in place may go unnoticed: the mesh then keeps its old neighbours and sides.
 //! * [`MeshToken`]: 64 bits in constant time, computed at every query. If the token has changed, the
 //!   pair forgets the mesh.
 //!
@@ -21,7 +21,7 @@ use std::hash::Hasher;
 use parry3d::shape::{TriMesh, TriMeshFlags};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-/// Identifies a mesh by its content.
+/// Identifies a mesh by its content, or a large unregistered mesh by addresses and samples.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ContentHash(u128);
 

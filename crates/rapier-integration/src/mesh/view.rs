@@ -76,7 +76,7 @@ pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
     })
 }
 
-/// Least cosine that [`nearest`] returns for a point inside a mesh.
+/// Cosine of [`nearest`] from which a point counts as inside. Points next to a reflex edge may have less.
 pub(crate) const BEHIND: Real = 0.9;
 
 /// Returns the nearest triangle of a mesh, the nearest point, and the cosine between the direction to `point` and the inward
@@ -108,8 +108,8 @@ pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Opt
 /// Parry's feature of a ray that meets the back of a triangle.
 const BACK: FeatureId = FeatureId::Face(1);
 
-/// Triangles near a ray at which [`ends_within`] gives up. Higher: slow where many triangles are at one place. Lower: thin
-/// walls of fine meshes are pushed together.
+/// Number of triangles near a ray from which [`ends_within`] returns false without a test. Higher: slow
+/// where many triangles are at one place. Lower: thin walls of fine meshes are pushed together.
 const CROWD: usize = 64;
 
 /// Greatest number of parts of a mesh that [`exit`] leaves one after another.
@@ -167,8 +167,8 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
     // Some 30 operations on coordinates up to twice these.
     let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
     let grown = margin.max(0.0) + gamma(64) * 2.0 * (size + pos12.translation.abs().max_element());
-    let is_finite = grown >= 0.0;
-    if !is_finite {
+    let is_number = grown >= 0.0;
+    if !is_number {
         return false;
     }
     let aabb = BvhNode::leaf(aabb.loosened(grown), 0);
@@ -227,8 +227,8 @@ impl<'a> MeshView<'a> {
     pub(crate) fn placed_root(&self, pose: &Pose, reach: Real) -> Aabb {
         let size = self.root.half_extents().length() + self.root.center().length();
         let grown = reach + gamma(64) * (size + pose.translation.length() + reach);
-        let is_finite = grown >= 0.0;
-        if is_finite { self.root.transform_by(pose).loosened(grown) } else { Aabb::new_invalid() }
+        let is_number = grown >= 0.0;
+        if is_number { self.root.transform_by(pose).loosened(grown) } else { Aabb::new_invalid() }
     }
 
     /// Half the sides of the box around the mesh, the least first.

@@ -1,4 +1,4 @@
-//! Contacts of shapes that are deep in each other. A sheet counts as the border of a solid here.
+//! Contacts of shapes that are deep in each other. A sheet counts as the surface of a solid here.
 //!
 //! Faces that have passed each other by more than a row of triangles no longer cross. The surfaces cross along a
 //! contour, and contacts lead the shortest way out of the overlap behind it. An overlap shrinks fastest along the area
@@ -47,7 +47,7 @@ struct Segment {
     pair: [u32; 2],
     /// True if the triangles have a contact.
     has_contact: bool,
-    /// Ends, in frame 1, with the overlap on one side for all segments of a contour.
+    /// Ends in frame 1, in the direction in which the contour runs around the overlap.
     ends: [DVec3; 2],
     /// Sum of both outward unit normals.
     outward: DVec3,
@@ -146,7 +146,7 @@ impl<'s> Contour<'s> {
     }
 
     /// Returns points of the overlap, with segments that stand for them: the middle, and points far from each other at
-    /// the contour. The choice does not depend on the order of the segments. Pairs with a contact stand for none.
+    /// the contour. Only ties depend on the order of the segments. Pairs with a contact stand for none.
     fn points(&self) -> Points<'s> {
         let free = || self.segments.iter().filter(|one| !one.has_contact);
         let from_middle = |one: &Segment| one.middle().distance_squared(self.middle);

@@ -46,8 +46,9 @@ struct Support {
     sides: [bool; 2],
 }
 
-/// Pairs of an island that one reliable contact supports. Higher: bodies deep in each other turn about
-/// their only contact and sink; lower: contacts that are no local minima push aside.
+/// Number of crossing pairs of an island for which one reliable contact is enough. Higher: bodies deep
+/// in each other turn about their only contact and sink; lower: contacts that are no local minima push
+/// aside.
 const SUPPORTED: u32 = 8;
 
 /// Direction by which shape 2 leaves an overlap.
@@ -89,7 +90,7 @@ pub(super) struct Unsupported {
     pub(super) has_contact: bool,
     /// Signs with which the normals of the triangles lead out of the shapes.
     pub(super) outward: [f64; 2],
-    /// True for each triangle that may be left through both sides.
+    /// True for each triangle of a sheet, or with the body in front.
     pub(super) is_sheet: [bool; 2],
 }
 
@@ -99,7 +100,7 @@ pub(super) struct Crossing {
     pub(super) pair: [u32; 2],
     /// False if they have passed each other.
     pub(super) is_crossing: bool,
-    /// Greatest depth of a contact that needs no closer look.
+    /// Greatest depth of a contact that needs no proof that a point is far inside.
     pub(super) greatest: f64,
     /// True if the first pass found a contact.
     pub(super) is_reliable: bool,
@@ -116,7 +117,7 @@ pub(super) struct Crossing {
 /// Position of a solid relative to a triangle of a sheet.
 #[derive(Copy, Clone)]
 pub(super) struct SheetSide {
-    /// The shape that counts as the sheet: the larger one of two sheets, `None` for two of one size.
+    /// The shape that counts as the sheet: of two sheets the larger one, `None` if both are equally large.
     pub(super) shape: Option<usize>,
     /// Normal of contacts that push the solid off the front of the triangle.
     pub(super) away: DVec3,
@@ -204,8 +205,8 @@ impl OverlapIslands {
         Some(self.crossings[index]).filter(|crossing| !self.is_fine(crossing))
     }
 
-    /// Returns true if reliable contacts push about as much one way as the other. They would not
-    /// push out a body that pierces a solid.
+    /// Returns true if pairs cross, and reliable contacts push about as much one way as the other, or are
+    /// missing. Such contacts would not push out a body that pierces a solid.
     pub(super) fn is_undecided(&self) -> bool {
         let reliable = self.crossings.iter().filter(|crossing| crossing.is_reliable);
         let (count, sum) =

@@ -29,8 +29,8 @@ pub(super) struct PairState<S, H> {
 pub(crate) struct Candidate<H> {
     /// Numbers in shape 1 and shape 2.
     pub(super) subshapes: [u32; 2],
-    /// Lower bound of the distance when it was last measured, plus the travel of the pair then.
-    /// Less the present travel, it bounds the present distance.
+    /// Lower bound of the distance plus the travel of the pair, both at the last measurement. Less the present
+    /// travel, this sum bounds the present distance.
     pub(super) clear: f64,
     /// Makes the next contact cheaper. Never changes the contact.
     pub(super) hint: H,

@@ -41,7 +41,8 @@ pub struct Surface {
     twins: CompactIndices,
     hubs: FxHashMap<twins::Place, (u32, u32)>,
     has_small_components: bool,
-    /// `None` for a mesh of more than [`PAIRED`] triangles: it has the sides of a mesh whose adjacency is not known.
+    /// Triangles of components with unpaired edges. `None` above [`PAIRED`] triangles, where no
+    /// component is known to be closed.
     open: Option<TriangleSet>,
     doubles: TriangleSet,
     kind: SurfaceKind,

@@ -185,7 +185,7 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         let second = self.sample(triangle, 1);
         let is_doubted = second != first && second == self.sample(triangle, 2);
         let side = if is_doubted { second } else { first };
-        // Two rays must agree, as many pass where boxes are flush.
+        // A point is outside only if two pairs of rays say so: single rays pass where boxes are flush.
         let is_inner_at = |start| {
             let mut rays = (0..2).filter_map(|i| Rays::new(self, triangle, start, i, STEEP));
             rays.any(|rays| rays.side_without_walls() == Side::Inner)
@@ -283,7 +283,7 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
 /// longer. Lower: single large triangles among many are missed.
 const CONSIDERED: u32 = 1 << 14;
 
-/// Classifies a mesh by up to 4096 rays.
+/// Classifies a mesh by up to 4096 rays, and more at walls.
 pub fn kind(triangles: &impl RayTriangles) -> SurfaceKind {
     let memo = &PlaceMemo::default();
     of_samples(&RayMesh::new(triangles, None, memo, WORK_OF_MESH), false)

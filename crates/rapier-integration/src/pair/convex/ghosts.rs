@@ -62,7 +62,7 @@ struct Corner {
     nearest: u32,
     /// A contact at this corner, and the result of `is_passed` for it.
     passed: Option<(u32, bool)>,
-    /// The stray with the least distance, or the contact that asked first, and true if one shares no corner.
+    /// The stray with the least distance, or the contact that asked first; and whether a stray shares no corner.
     stray: Option<(u32, bool)>,
     /// True if a triangle has an edge here that no other contact has.
     is_border: Option<bool>,

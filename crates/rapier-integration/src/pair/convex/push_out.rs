@@ -16,8 +16,8 @@ use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{BEHIND, LazySurface, is_covered};
 use crate::pair::query::ContactList;
 
-/// Depth of a contact, as a share of the part's radius, from which a part whose middle is outside may
-/// have half of itself inside, as cones do. Higher: cones stay in solids; lower: more searches for the
+/// Depth of a contact, as a share of the part's radius, from which half of a part may be inside though the
+/// middle is outside, as of cones. Higher: cones stay in solids; lower: more searches for the
 /// nearest face.
 const DEEP: f64 = 0.1;
 

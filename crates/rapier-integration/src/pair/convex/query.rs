@@ -162,7 +162,8 @@ impl PairQuery for ConvexQuery<'_> {
         (self.pose().prediction.max(0.0) + gamma(64) * largest).min(Real::MAX)
     }
 
-    /// Serves balls, whose contacts and box tests cost less than to keep candidates.
+    /// Forgets the placed parts of the last query. Serves balls, whose contacts and box tests cost less than to
+    /// keep candidates.
     fn contacts_without_candidates(
         &mut self,
         counts: &mut DescentCounts,

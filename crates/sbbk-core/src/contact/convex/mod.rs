@@ -14,9 +14,6 @@
 //! assert!((contact.distance + 0.2).abs() < 1.0e-15);
 //! ```
 //!
-//! This module is frozen: it works, its tests compare it with brute force, and other code needs only
-//! its interface.
-//!
 //! # How
 //!
 //! Balls, capsules, boxes, cylinders and cones have closed forms. For bodies apart these are nearest
