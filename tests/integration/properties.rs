@@ -10,11 +10,12 @@ use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
+use sbbk_testkit::mesh;
 
 use crate::kinds::{Kind, kinds, mesh_pairs};
 use crate::support::{
     Manifold, Pair, Question, assert_bits, assert_same, counting, counting_patches, distance,
-    every, nudge, per_triangle, triangles,
+    every, nudge, per_triangle, shape, triangles,
 };
 
 const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
@@ -262,6 +263,24 @@ fn steady_contact_allocates_nothing() {
             assert!(stats.descended_queries > 100, "{}: {stats:?}", kind.name);
         }
     }
+}
+
+/// Would catch memory of a thread that many light pairs make it drop between two queries of a heavy one.
+#[test]
+fn light_pairs_make_no_heavy_pair_allocate() {
+    let (floor, light) = (shape(&mesh::floor(4.0, 12)), shape(&mesh::cuboid(Vec3::ONE, 1)));
+    let heavy = Question::new(&floor, &floor, Pose::IDENTITY);
+    let light = Question::new(&light, &light, Pose::IDENTITY);
+    let (dispatcher, mut pairs) = (per_triangle(), [(); 2].map(|()| Pair::<(), ()>::default()));
+    let mut step = |number: usize| {
+        let at = |y: Real, i: usize| Pose::from_translation((y - 1e-6 * (i % 8) as Real) * Vec3::Y);
+        pairs[0].ask(&dispatcher, &heavy.at(at(0.01, number)));
+        (0..100).for_each(|i| _ = pairs[1].ask(&dispatcher, &light.at(at(2.01, i))));
+        pairs[0].manifolds.len()
+    };
+    assert!((0..20).map(&mut step).all(|count| count > 1400));
+    let count = measure(|| (0..10).for_each(|number| _ = step(number))).count_total;
+    assert_eq!(count, 0);
 }
 
 /// Would catch a counter of allocations that counts nothing.

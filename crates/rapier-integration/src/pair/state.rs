@@ -128,21 +128,31 @@ impl<H: Copy + Default> CandidateMemory<H> {
 pub(super) struct HighWaterMark {
     peak: usize,
     /// Queries since as much was used.
-    age: u8,
+    age: u32,
+    has_given_back: bool,
+    /// Times that memory was given back too soon.
+    regrets: u8,
 }
 
 impl HighWaterMark {
-    /// Queries until a quarter of the memory is given back. Higher: memory is kept longer; lower:
-    /// allocations where contacts come and go.
-    const PATIENCE: u8 = 64;
+    /// Queries until a quarter of the memory is given back, doubled at each regret. Higher: memory is kept
+    /// longer; lower: allocations where contacts come and go.
+    const PATIENCE: u32 = 64;
+    /// Greatest number of regrets. Higher: memory is kept longer. Lower: a thread with many light pairs and a heavy one
+    /// allocates in each step.
+    const MOST_REGRETS: u8 = 8;
 
     /// Notes what a query has used. Returns a limit if it is time to keep less.
     pub(super) fn update(&mut self, used: usize) -> Option<usize> {
         self.age += 1;
         if used >= self.peak {
+            if used > self.peak && std::mem::take(&mut self.has_given_back) {
+                self.regrets = (self.regrets + 1).min(Self::MOST_REGRETS);
+            }
             (self.peak, self.age) = (used, 0);
-        } else if self.age >= Self::PATIENCE {
+        } else if self.age >= Self::PATIENCE << self.regrets {
             (self.peak, self.age) = (used.max(self.peak - self.peak.div_ceil(4)), 0);
+            self.has_given_back = true;
             return Some(self.peak);
         }
         None

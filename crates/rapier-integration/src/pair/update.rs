@@ -65,9 +65,10 @@ where
         write_every(&mut query, &mut lent, &mut writer);
     }
     writer.end();
-    let limit = lent.demand.update(lent.contacts.len());
-    let is_too_large = limit.is_some_and(|limit| limit >= LEAST_KEPT);
-    P::Query::memory().set((!is_too_large).then_some(lent));
+    if lent.demand.update(lent.contacts.len()).is_some_and(|limit| limit >= LEAST_KEPT) {
+        *lent = QueryMemory { demand: lent.demand, ..QueryMemory::default() };
+    }
+    P::Query::memory().set(Some(lent));
     memory.end(query.pose(), manifolds.len());
     outcome
 }
