@@ -1,6 +1,7 @@
 use glamx::Vec3;
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Pose;
 use rapier3d::parry::shape::{HeightFieldCellStatus, HeightFieldFlags};
 use sbbk_testkit::mesh;
 
@@ -40,4 +41,24 @@ fn an_edited_field_is_noticed() {
     let moved = Question::new(&terrain.field, &head, nudge(&mut random, 1e-5) * pose);
     let expected = moved.fresh(&dispatcher);
     assert_same(&pair.ask(&dispatcher, &moved).manifolds, &expected, 0.0);
+}
+
+/// Would catch memory and counts for a mesh that is far from the ground.
+#[test]
+fn a_far_mesh_gets_no_workspace() {
+    let (dispatcher, mut random) = (SbbkDispatcher::default(), Rand32::new(7));
+    let terrain = Terrain::random(&mut random, [14, 17], Vec3::new(6.0, 1.0, 4.0));
+    let head = shape(&mesh::monkey_head());
+    let near = place(&mut random, &terrain, &head, 0.1);
+    for is_flipped in [false, true] {
+        for (height, is_near) in [(0.0, true), (3.0, false), (-3.0, false)] {
+            let pose = Pose::from_translation(height * Vec3::Y) * near;
+            let question = Question::new(&terrain.field, &head, pose).flipped(is_flipped);
+            let mut pair: Pair = Pair::default();
+            pair.ask(&dispatcher, &question);
+            assert_eq!(pair.workspace.is_some(), is_near, "{height}");
+            assert_eq!(pair.manifolds.is_empty(), !is_near, "{height}");
+        }
+    }
+    assert_eq!(dispatcher.stats().pairs, 2);
 }

@@ -82,8 +82,11 @@ impl SbbkDispatcher {
             (None, None) => return None,
         };
         if let Some(field) = other.as_heightfield().filter(|_| kinds.height_fields) {
-            let [mesh] = self.view([mesh])?;
-            let shapes = [ShapeView::Mesh(mesh), ShapeView::Field(Field(field))];
+            let ([mesh], field) = (self.view([mesh])?, Field(field));
+            if is_new && !field.is_near(&mesh, &mesh_place.mesh_in_shape(pos12), prediction) {
+                return Some(Kind::Apart);
+            }
+            let shapes = [ShapeView::Mesh(mesh), ShapeView::Field(field)];
             return Some(Kind::Triangles(mesh_place.swap(shapes)));
         }
         let parts = Parts::of(other).filter(|parts| match parts {

@@ -3,21 +3,30 @@ use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::math::{Real, Vector};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::PointQuery;
 use parry3d::shape::{HeightField, HeightFieldCellStatus, Triangle};
 use rustc_hash::FxBuildHasher;
 use sbbk_core::contact::Feature;
-use sbbk_core::field::{FieldTriangle, HeightGrid};
+use sbbk_core::field::{FieldFrame, FieldTriangle, HeightGrid};
 use sbbk_core::surface::Facets;
+use sbbk_core::traverse::{Placement, TestedBox};
 
-use crate::mesh::box_between;
+use crate::mesh::{MeshView, box_between};
 
 /// Parry's height field as a grid of triangles. Parry's rows lie along z, its columns along x.
 #[derive(Copy, Clone)]
 pub(crate) struct Field<'a>(pub(crate) &'a HeightField);
 
 impl Field<'_> {
+    /// Returns false if the heights under the box of a mesh, which is placed in the field, are all beyond the prediction
+    /// distance.
+    pub(crate) fn is_near(self, mesh: &MeshView<'_>, mesh_pose: &Pose, prediction: Real) -> bool {
+        let (placement, root) = (Placement::new(mesh_pose), mesh.root());
+        let frame = FieldFrame::new(&self, &placement, prediction.max(0.0));
+        frame.meets(TestedBox::new(root.mins, root.maxs), ())
+    }
+
     /// Returns Parry's number of a triangle: left ones first, along z, then x.
     pub(super) fn id(self, FieldTriangle { cell: [column, row], side }: FieldTriangle) -> u32 {
         let cell = column * self.0.nrows() + row;

@@ -53,7 +53,7 @@ impl MeshPlace {
     }
 
     /// Returns the mesh in the frame of the other shape.
-    pub(super) fn mesh_in_shape(self, pos12: &Pose) -> Pose {
+    pub(crate) fn mesh_in_shape(self, pos12: &Pose) -> Pose {
         if self.is_second() { *pos12 } else { pos12.inverse() }
     }
 
