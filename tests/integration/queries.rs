@@ -327,6 +327,21 @@ fn non_finite_input_has_no_result() {
     }
 }
 
+/// Would catch a query that builds two trees at once, for more than 2 ms, or that never builds the second one.
+#[test]
+fn queries_build_trees_within_the_budget() {
+    let dispatcher = SbbkDispatcher::default();
+    let [one, two] = [0.5, 0.6].map(|half| shape(&mesh::cuboid(Vec3::splat(half), 20)));
+    let at = Pose3::translation(2.0, 0.3, 0.1);
+    let builds = |count: usize| {
+        let mut distances =
+            (0..count).map(|_| dispatcher.distance(&at, &one, &two).unwrap().distance);
+        assert!(distances.all(|distance| (distance - 0.9).abs() < 1e-6));
+        dispatcher.stats().internals.tree_builds
+    };
+    assert_eq!([builds(1), builds(10), builds(30)], [1, 1, 2]);
+}
+
 #[test]
 fn queries_without_manifolds_are_counted() {
     let dispatcher = SbbkDispatcher::default();

@@ -170,11 +170,13 @@ impl MeshStore {
         data
     }
 
-    /// Returns the data of a small mesh with its tree, which is built if it is not there.
+    /// Returns the data of a small mesh, if its tree is there or the budget covers the tree. Charges no hash: queries
+    /// without a workspace compute one each time, and would never save up for a tree.
     pub(super) fn small_with_tree(&self, mesh: &TriMesh) -> Option<Arc<MeshData>> {
-        let data = is_small(mesh.indices().len()).then(|| self.entry(mesh))?;
-        self.build(mesh, &data).ok()?;
-        Some(data)
+        let is_small = is_small(mesh.indices().len());
+        let data = is_small.then(|| self.entry_of(ContentHash::of(mesh)))?;
+        self.build_within_budget(mesh, &data);
+        data.tree().is_some().then_some(data)
     }
 
     /// Builds the tree of a small mesh, if the budget covers it and no thread has begun to.
@@ -211,6 +213,11 @@ impl MeshStore {
     /// Counts a descent without trees.
     pub(crate) fn count_walk(&self) {
         self.counters.walks.raise();
+        self.earn_tree();
+    }
+
+    /// Notes a search without trees, which earns time for trees.
+    pub(crate) fn earn_tree(&self) {
         self.budget.earn();
     }
 

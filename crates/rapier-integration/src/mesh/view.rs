@@ -202,9 +202,14 @@ impl<'a> MeshView<'a> {
     }
 
     /// Returns the shared data of the mesh with its tree, if the mesh is registered or small. Finds
-    /// small ones by a hash of their content, and builds their trees.
+    /// small ones by a hash of their content, and builds their trees within the budget.
     pub(crate) fn with_tree(&self) -> Option<Arc<MeshData>> {
         self.registered().or_else(|| self.store.small_with_tree(self.mesh))
+    }
+
+    /// Notes a search without trees.
+    pub(crate) fn earn_tree(&self) {
+        self.store.earn_tree();
     }
 
     /// True if the mesh cannot change while its token stays.

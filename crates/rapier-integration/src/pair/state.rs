@@ -138,8 +138,8 @@ impl HighWaterMark {
     /// Queries until a quarter of the memory is given back, doubled at each regret. Higher: memory is kept
     /// longer; lower: allocations where contacts come and go.
     const PATIENCE: u32 = 64;
-    /// Greatest number of regrets. Higher: memory is kept longer. Lower: a thread with many light pairs and a heavy one
-    /// allocates in each step.
+    /// Greatest number of regrets. Higher: memory is kept longer. Lower: a thread with many light pairs
+    /// and a heavy one allocates in each step.
     const MOST_REGRETS: u8 = 8;
 
     /// Notes what a query has used. Returns a limit if it is time to keep less.

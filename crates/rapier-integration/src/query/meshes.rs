@@ -53,7 +53,10 @@ impl<'a> MeshQuery<'a> {
     ) -> T {
         match self.trees() {
             Some(trees) => search_trees(trees, by_trees),
-            None => by_bvhs(self.bvhs()),
+            None => {
+                self.meshes[0].earn_tree();
+                by_bvhs(self.bvhs())
+            }
         }
     }
 
@@ -61,7 +64,7 @@ impl<'a> MeshQuery<'a> {
         BvhSearch { meshes: self.meshes.each_ref(), placement: self.placement }
     }
 
-    /// Returns the trees of meshes that are registered or small.
+    /// Returns the trees of meshes that are registered, or small and within the budget.
     fn trees(&self) -> Option<Trees> {
         let [mesh1, mesh2] = &self.meshes;
         // A large mesh without a tree costs no hash, so the larger one comes first.
