@@ -12,6 +12,7 @@ use super::pair::{self, SIDES};
 
 const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";
+const DEFAULTS: &str = "contacts: queries with the default settings, µs";
 
 /// A mesh and its approaches.
 #[derive(Clone, Debug)]
@@ -103,6 +104,11 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     }
     let shapes = cases.iter().map(|case| &case.shape);
     let sides = SIDES.map(|backend| backend.per_triangle(shapes.clone()));
+    let by_default = SIDES.map(|backend| {
+        let mut dispatcher = backend.dispatcher();
+        dispatcher.prepare(shapes.clone());
+        dispatcher
+    });
     progress.phase("poses and brute force", cases.len());
     let cases: Vec<Case> = parallel::map(&cases, parallel::threads(), |index, case| {
         let case = case.clone().judged(index, &sides);
@@ -112,7 +118,7 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     let mut rows: Vec<Row> = cases.iter().flat_map(Case::exactness).collect();
     progress.phase("speed", plan.meshes.len());
     for case in cases.iter().filter(|case| [case.size, case.prediction] == SPEED_CASE) {
-        rows.extend(case.speed(&sides, plan.repeats));
+        rows.extend(case.speed(&sides, &by_default, plan.repeats));
         progress.step();
     }
     Results::new("contacts", rows)
@@ -167,7 +173,12 @@ impl Case<'_> {
     }
 
     /// Times of first queries, and of queries in motion.
-    fn speed(&self, sides: &[Dispatcher; 2], repeats: usize) -> Vec<Row> {
+    fn speed(
+        &self,
+        sides: &[Dispatcher; 2],
+        by_default: &[Dispatcher; 2],
+        repeats: usize,
+    ) -> Vec<Row> {
         let affordable = REPEATED_TRIANGLES / self.mesh.mesh.triangle_count().max(1);
         let repeats = affordable.min(MOST_REPEATS).max(repeats);
         let mut rows = Vec::new();
@@ -181,6 +192,8 @@ impl Case<'_> {
             };
             let row = self.row(QUERIES, "").key("mode", mode);
             rows.extend(pair::rows(sides, &row, repeats, &sequences, &errors));
+            let row = self.row(DEFAULTS, "").key("mode", mode);
+            rows.extend(pair::timed_rows(by_default, &row, repeats, &sequences));
         }
         rows
     }

@@ -15,13 +15,24 @@ pub(super) fn rows(
     sequences: &[Sequence],
     errors: &[Errors],
 ) -> Vec<Row> {
+    let rows = timed_rows(dispatchers, row, repeats, sequences);
+    rows.into_iter().zip(errors).map(|(row, errors)| row.with("errors", errors)).collect()
+}
+
+/// Rows of all dispatchers, with microseconds a query.
+pub(super) fn timed_rows(
+    dispatchers: &[Dispatcher],
+    row: &Row,
+    repeats: usize,
+    sequences: &[Sequence],
+) -> Vec<Row> {
     let queries = |sequence: &Sequence| (sequence.poses.len() - 1).max(1);
     let count = sequences.iter().map(queries).sum::<usize>() as f64;
     let times = times(dispatchers, repeats, sequences);
-    let rows = dispatchers.iter().zip(times).zip(errors).map(|((dispatcher, times), errors)| {
+    let rows = dispatchers.iter().zip(times).map(|(dispatcher, times)| {
         let times = times.iter().map(|time| 1e6 / count * time.as_secs_f64());
         let row = Row { backend: dispatcher.backend.to_string(), ..row.clone() };
-        row.with("time", Summary::of(times)).with("errors", errors)
+        row.with("time", Summary::of(times))
     });
     rows.collect()
 }
