@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
-    Around, Facets, NormalCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
+    Around, Facets, MinimumCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
     place, side,
 };
 
@@ -118,8 +118,8 @@ impl MeshFacets<'_> {
     }
 
     #[cold]
-    fn find_cones(self, triangle: u32) -> NormalCones {
-        let cones = NormalCones::of(&Around { facets: self, side: Side::Sheet }, triangle);
+    fn find_cones(self, triangle: u32) -> MinimumCones {
+        let cones = MinimumCones::of(&Around { facets: self, side: Side::Sheet }, triangle);
         self.with_flags(triangle, |flags| flags.set_cones(cones));
         cones
     }
@@ -161,8 +161,8 @@ impl Facets for MeshFacets<'_> {
 
     /// Meshes that are not analysed as a whole have none, as each needs a search for neighbours.
     #[inline]
-    fn cones(&self, triangle: u32) -> NormalCones {
-        let Twins::All(_, flags) = self.twins else { return NormalCones::ALL };
+    fn cones(&self, triangle: u32) -> MinimumCones {
+        let Twins::All(_, flags) = self.twins else { return MinimumCones::ALL };
         flags[triangle as usize].cones().unwrap_or_else(|| self.find_cones(triangle))
     }
 
@@ -171,7 +171,7 @@ impl Facets for MeshFacets<'_> {
     }
 }
 
-/// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], and its [`NormalCones`].
+/// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], and its [`MinimumCones`].
 #[derive(Debug, Default)]
 pub(crate) struct TriangleFlags(AtomicU32);
 
@@ -207,11 +207,11 @@ impl TriangleFlags {
     }
 
     #[inline]
-    fn cones(&self) -> Option<NormalCones> {
-        NormalCones::of_bits((self.0.load(Ordering::Relaxed) >> 16) as u16)
+    fn cones(&self) -> Option<MinimumCones> {
+        MinimumCones::of_bits((self.0.load(Ordering::Relaxed) >> 16) as u16)
     }
 
-    fn set_cones(&self, cones: NormalCones) {
+    fn set_cones(&self, cones: MinimumCones) {
         self.0.fetch_or(u32::from(cones.bits()) << 16, Ordering::Relaxed);
     }
 

@@ -8,7 +8,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::query::Ray;
 use parry3d::shape::{Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Facets, NormalCones, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::surface::{Around, Facets, MinimumCones, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::volumes::Sphere;
 
 use super::field::Field;
@@ -219,7 +219,7 @@ impl Facets for ShapeFacets<'_> {
     }
 
     #[inline]
-    fn cones(&self, triangle: u32) -> NormalCones {
+    fn cones(&self, triangle: u32) -> MinimumCones {
         match self {
             Self::Mesh(mesh) => mesh.cones(triangle),
             Self::Field(field) => field.cones(triangle),

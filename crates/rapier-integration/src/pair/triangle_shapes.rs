@@ -90,8 +90,8 @@ impl TriangleShapes<'_> {
         *self.reach.get_or_init(|| reach(&self.shapes, self.pose, self.filter_distance))
     }
 
-    /// Returns a test for pairs of triangles that a descent within `margin` finds and that are no local minima while its candidates
-    /// serve, unless a triangle [bends much](Self::bends_little).
+    /// Returns a test for triangles beside each other. Their contacts are no local minima while candidates within `margin`
+    /// serve, where the surface [bends little](Self::bends_little).
     pub(super) fn lateral_culling(&self, margin: Real) -> Option<LateralCulling> {
         let reach = self.reach();
         let is_filtered = f64::from(reach) <= self.filter_distance;
@@ -101,8 +101,8 @@ impl TriangleShapes<'_> {
         })
     }
 
-    /// Returns true if a contact that leans from the normal of a triangle of shape `i` as much as
-    /// [lateral culling](Self::lateral_culling) asks for is no local minimum. Height fields are never culled.
+    /// Returns true if contacts beside a triangle of shape `i`, by [lateral culling](Self::lateral_culling), are no local
+    /// minima. False for height fields.
     pub(super) fn bends_little(&self, i: usize, triangle: u32) -> bool {
         let TriangleShape::Mesh(MeshShape { surface: Some(surface), .. }) = &self[i] else {
             return false;

@@ -33,8 +33,8 @@ const LEVEL: f64 = 1.0e-6;
 /// that is at most `most`.
 ///
 /// `solid` is true for triangles of a solid, whose normals point outside. `is_extremal` returns true if no neighbour of a
-/// feature of triangle 1 (0) or 2 (1) is farther in a direction. It must be false where the square of the cosine between the
-/// direction and the normal is less than that of `cones`.
+/// feature of triangle 1 (0) or 2 (1) is farther in a direction. `cones` has squares of the least cosines between the normals and
+/// extremal directions.
 ///
 /// The distance is that of the deepest points; `out` gets the points of [`clip`](super::clip). Returns `None` if these show
 /// less than the overlap.

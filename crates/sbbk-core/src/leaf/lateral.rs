@@ -1,7 +1,7 @@
 //! Lateral culling: rejects triangles that lie beside each other instead of over each other.
 //!
 //! The nearest points of two small triangles of bodies that face each other are mostly aslant. They are no local minima where
-//! the surface bends less ([`NormalCones`](crate::surface::NormalCones)), and need no exact test.
+//! the surface bends less ([`MinimumCones`](crate::surface::MinimumCones)), and need no exact test.
 //!
 //! Let `n` be the normal of a triangle, `m` the direction in its plane away from one of its edges,
 //! and `g` the least distance of the other triangle beyond that edge. Let `h` be the greatest

@@ -52,7 +52,7 @@ impl LeafTest {
     }
 
     /// Like [`survivors`](Self::survivors). With `lateral`, leaves out pairs whose nearest points are beside one of the
-    /// triangles, if `may_reject` is true for that triangle of leaf 1 (0) or 2 (1), which a lane names.
+    /// triangles. `may_reject` must agree. It takes the leaf of that triangle (0 or 1) and the lane.
     #[inline]
     pub fn survivors_in_front(
         &self,

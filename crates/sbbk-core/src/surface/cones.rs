@@ -1,4 +1,4 @@
-//! Normal cones: the directions in which a triangle or one of its features may be a local minimum.
+//! Minimum cones: the directions in which a triangle or one of its features may be a local minimum.
 //!
 //! Most directions are far from the normal of a triangle and need no look at the neighbours (Johnson and Cohen,
 //! *Spatialized Normal Cone Hierarchies*, 2001).
@@ -22,13 +22,13 @@ const ROUNDING: f64 = 1.0e-6;
 
 /// Two cones around the line of a triangle's normal: for contacts with an edge or a vertex, and with a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NormalCones([u8; 2]);
+pub struct MinimumCones([u8; 2]);
 
-impl NormalCones {
+impl MinimumCones {
     /// Cones of all directions.
     pub const ALL: Self = Self([1; 2]);
 
-    /// Returns the number that [`NormalCones::of_bits`] takes.
+    /// Returns the number that [`MinimumCones::of_bits`] takes.
     pub fn bits(self) -> u16 {
         u16::from_le_bytes(self.0)
     }
@@ -48,8 +48,8 @@ impl NormalCones {
     /// Finds the cones of a triangle. Takes about a microsecond.
     ///
     /// A direction at an angle `t` to the normal leads up along one of the edges of a closed one-ring. Let `b` be the greatest
-    /// sine by which an edge leaves the plane of the triangle, and `a` the cosine of half the widest angle between
-    /// edges in the plane, times the cosine that belongs to `b`. The edge rises by `a sin t - b cos t` at least, which is at
+    /// sine by which an edge leaves the plane of the triangle. Let `a` be the cosine that belongs to `b`, times the cosine of
+    /// half the widest angle between edges in the plane. The edge rises by `a sin t - b cos t` at least. This is at
     /// most the allowed sine `s` where `t <= atan(b / a) + asin(s / sqrt(a² + b²))`.
     pub fn of(around: &Around<impl Facets>, triangle: u32) -> Self {
         let corners = each(|i| around.facets.corner(3 * triangle, i));

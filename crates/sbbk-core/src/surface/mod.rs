@@ -13,7 +13,7 @@ pub mod strays;
 mod triangle;
 mod twins;
 
-pub use cones::NormalCones;
+pub use cones::MinimumCones;
 pub use one_ring::{Around, Facets};
 pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
-use super::cones::NormalCones;
+use super::cones::MinimumCones;
 use super::sides::Side;
 use super::slopes::{Bend, FLAT, Heights, LONG, PlaceMemo, Signs, Slopes, angle};
 use super::triangle::{area_vector, seam, touches};
@@ -30,8 +30,8 @@ pub trait Facets {
     fn near(&self, _corners: [DVec3; 2], _visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
 
     /// Bounds of the directions that may be local minima at a triangle. They spare the look at its neighbours.
-    fn cones(&self, _triangle: u32) -> NormalCones {
-        NormalCones::ALL
+    fn cones(&self, _triangle: u32) -> MinimumCones {
+        MinimumCones::ALL
     }
 
     /// Memory for places where many triangles meet.

@@ -172,9 +172,10 @@ impl PlaceMemo {
     }
 }
 
-/// Height of a direction along the pseudo-normal of a point: the sum of the normals there, weighted by angles. Directions to
-/// points that are nearest to that point have a negative height in the solid (Bærentzen and Aanæs, *Signed Distance Computation Using
-/// the Angle Weighted Pseudonormal*, 2005). Areas as weights would fail at acute corners.
+/// Height of a direction along the pseudo-normal of a point: the sum of the normals there, weighted by angles. The height is
+/// negative if the direction leads to a point in the solid to which the place is nearest. Areas as weights would fail at acute corners.
+///
+/// Source: Bærentzen and Aanæs, *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005.
 #[derive(Default)]
 pub(super) struct Heights {
     sum: f64,
