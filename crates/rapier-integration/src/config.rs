@@ -19,9 +19,8 @@ pub enum ContactSet {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize))]
 pub enum ContactDetail {
-    /// A manifold for each pair of touching subshapes, as in stock Rapier. Contacts of
-    /// surfaces of two meshes, or of a mesh and a height field, are reduced if all are farther than a tenth of
-    /// the smaller radius.
+    /// A manifold for each pair of touching subshapes, as in stock Rapier. Contacts of two meshes, or of a mesh and a height
+    /// field, are reduced if all are farther than a tenth of the smaller radius.
     Every,
     /// Reduced contacts: a few manifolds of at most four points, which carry like all of them. The
     /// deepest point is always among them, and the subshapes are those of the deepest contact. Pairs

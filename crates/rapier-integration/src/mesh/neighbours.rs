@@ -12,7 +12,7 @@ use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
     Around, Facets, MinimumCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
-    place, side,
+    minimum_cones, place, side,
 };
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -119,7 +119,7 @@ impl MeshFacets<'_> {
 
     #[cold]
     fn find_cones(self, triangle: u32) -> MinimumCones {
-        let cones = MinimumCones::of(&Around { facets: self, side: Side::Sheet }, triangle);
+        let cones = minimum_cones(&self, triangle);
         self.with_flags(triangle, |flags| flags.set_cones(cones));
         cones
     }

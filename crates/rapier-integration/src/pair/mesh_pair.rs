@@ -41,7 +41,7 @@ pub(crate) enum ShapeView<'a> {
     Field(Field<'a>),
 }
 
-/// What a pair knows of one of its shapes: of a mesh or of a field.
+/// A pair's knowledge of one of its shapes, which is a mesh or a field.
 #[derive(Clone, Default)]
 pub(crate) struct KnownShape {
     mesh: PairMesh,

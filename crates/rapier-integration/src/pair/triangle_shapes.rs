@@ -170,7 +170,7 @@ pub(super) enum ContactSource {
 }
 
 impl ContactSource {
-    /// Returns the normal cones that a contact obeys, from those of its triangles.
+    /// Returns the normal cones of both triangles that a contact obeys.
     pub(super) fn cones(self, of_triangles: &[Option<TrianglePseudoNormals>; 2]) -> Cones<'_> {
         of_triangles.each_ref().map(|cone| {
             let cone = cone.as_ref().filter(|_| self != Self::PushOut)?;

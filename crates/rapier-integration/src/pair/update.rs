@@ -73,7 +73,7 @@ where
     outcome
 }
 
-/// Replaces the contacts in the memory of a thread by those of a query.
+/// Computes the contacts of a query, in the memory of the thread.
 fn update_contacts<Q: PairQuery>(
     query: &mut Q,
     memory: &mut CandidateMemory<Q::Hint>,

@@ -80,7 +80,7 @@ impl<'a> MeshQuery<'a> {
 
     /// Returns triangles that touch, if any do.
     pub(super) fn touching(&self) -> Option<[u32; 2]> {
-        // Most of these queries take less time than the hash of a small mesh.
+        // Hashing a small mesh takes longer than most of these queries.
         let [mesh1, mesh2] = self.meshes.each_ref().map(MeshView::registered);
         let pair = if let (Some(tree1), Some(tree2)) = (mesh1, mesh2) {
             search_trees([tree1, tree2], |trees, scratch| meeting(trees, self.placement, scratch))

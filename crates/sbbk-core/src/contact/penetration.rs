@@ -36,7 +36,7 @@ const LEVEL: f64 = 1.0e-6;
 /// feature of triangle 1 (0) or 2 (1) is farther in a direction. `cones` has squares of the least cosines between the normals and
 /// extremal directions.
 ///
-/// The distance is that of the deepest points; `out` gets the points of [`clip`](super::clip). Returns `None` if these show
+/// The deepest points give the distance. `out` gets the contact points, as from [`clip`](super::clip). Returns `None` if these show
 /// less than the overlap.
 pub fn extremal_penetration(
     triangles: [&[DVec3; 3]; 2],
@@ -109,7 +109,10 @@ impl<'t> Outward<'t> {
             let square = direction.length_squared();
             // Before the division: most directions end here.
             if (0..2).all(|i| heights[i] * heights[i] >= cones[i] * square) {
-                axes.extend(Some(self.axis(direction)).filter(|(gap, _)| *gap >= -most));
+                let (gap, axis) = self.axis(direction);
+                if gap >= -most {
+                    axes.push((gap, axis));
+                }
             }
         };
         if !self.are_cones_apart(cones) {
@@ -161,7 +164,7 @@ impl<'t> Outward<'t> {
         }
         let (slopes1, slopes2) = (slopes(t1, normal2), slopes(t2, normal1));
         for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
-            // The edges are in front only if both have one sign, that of the axis (see `axes.rs`).
+            // Both edges have the sign of the axis if they are in front (see `axes.rs`).
             let (sign1, sign2) = (slopes1[i], slopes2[j]);
             if sign1 * sign2 < 0.0 {
                 continue;

@@ -5,18 +5,22 @@
 //! welded vertices, and derives from rays if the triangles bound a solid.
 
 mod cones;
+mod facets;
 mod meeting;
 mod one_ring;
 mod sides;
 mod slopes;
+mod spread;
 pub mod strays;
 mod triangle;
 mod twins;
 
 pub use cones::MinimumCones;
-pub use one_ring::{Around, Facets};
+pub use facets::Facets;
+pub use one_ring::Around;
 pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
+pub use spread::minimum_cones;
 pub use twins::{Place, place};
 
 use glamx::Vec3;
@@ -60,14 +64,15 @@ impl Surface {
             twins::find(vertices, triangles);
         let is_closed = is_closed && triangles.len() <= PAIRED;
         let memo = &PlaceMemo::default();
-        let mesh = sides::RayMesh::new(rays, open.as_ref(), memo, sides::WORK_OF_MESH);
+        let mesh = sides::RayMesh::new(rays, open.as_ref(), memo, sides::WallLimit::MESH);
         let kind = sides::of_samples(&mesh, is_closed);
         Self { twins, hubs, has_small_components, open, doubles, kind }
     }
 
     /// Finds the side of a triangle as [`side`](side()) does. Takes less time, as rays count closed components as they are.
     pub fn side(&self, triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-        sides::RayMesh::new(triangles, self.open.as_ref(), memo, sides::WORK_OF_SIDE).side(triangle)
+        sides::RayMesh::new(triangles, self.open.as_ref(), memo, sides::WallLimit::SIDE)
+            .side(triangle)
     }
 
     /// True if an earlier triangle has the same corners, in either winding. The earlier triangle has its contacts.

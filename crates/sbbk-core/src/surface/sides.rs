@@ -129,18 +129,29 @@ const TIE: f64 = 1.0e-9;
 
 /// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more.
 pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-    RayMesh::new(triangles, None, memo, WORK_OF_UNKNOWN).side(triangle)
+    RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).side(triangle)
 }
 
-/// Triangles that rays may come near in tests for walls, for the side of one triangle. Beyond that, walls count as faces. Higher:
-/// meshes of open parts in each other are slower. Lower: walls within such meshes have contacts.
-pub(super) const WORK_OF_SIDE: i64 = 4000;
+/// Limit of the tests for walls. Beyond it, walls count as faces.
+#[derive(Clone, Copy)]
+pub(super) struct WallLimit {
+    /// Triangles that the rays of these tests may come near. Higher: meshes of open parts in each other are slower. Lower:
+    /// walls within such meshes have contacts.
+    work: i64,
+    /// True if others use the memo of walls. Known walls then count as new ones, so a side does not depend on these others.
+    is_shared: bool,
+}
 
-/// The same for a mesh whose closed components are not known.
-const WORK_OF_UNKNOWN: i64 = 100_000;
+impl WallLimit {
+    /// The limit for the side of one triangle.
+    pub(super) const SIDE: Self = Self { work: 4000, is_shared: true };
 
-/// The same for all samples of a mesh.
-pub(super) const WORK_OF_MESH: i64 = 400_000;
+    /// The limit for a side if closed components are not known.
+    const UNKNOWN: Self = Self { work: 100_000, is_shared: true };
+
+    /// The limit for all samples of a mesh.
+    pub(super) const MESH: Self = Self { work: 400_000, is_shared: false };
+}
 
 /// Work of a ray beside the triangles that it comes near.
 const WORK_OF_RAY: i64 = 16;
@@ -154,11 +165,9 @@ pub(super) struct RayMesh<'a, T> {
     pub(super) memo: &'a PlaceMemo,
     /// Triangles that rays have come near.
     work: Cell<i64>,
-    /// Work that tests for walls may take.
+    /// What is left of the limit of tests for walls.
     left: Cell<i64>,
-    /// True if others use the memo. Walls that it knows count as if they were not known then, as the side of a triangle must not
-    /// depend on these others.
-    is_shared: bool,
+    limit: WallLimit,
 }
 
 impl<'a, T: RayTriangles> RayMesh<'a, T> {
@@ -166,10 +175,10 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         triangles: &'a T,
         open: Option<&'a TriangleSet>,
         memo: &'a PlaceMemo,
-        most: i64,
+        limit: WallLimit,
     ) -> Self {
-        let (work, left) = (Cell::new(0), Cell::new(most));
-        Self { triangles, open, memo, work, left, is_shared: most < WORK_OF_MESH }
+        let (work, left) = (Cell::new(0), Cell::new(limit.work));
+        Self { triangles, open, memo, work, left, limit }
     }
 
     fn is_exhausted(&self) -> bool {
@@ -228,7 +237,7 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         let before = self.work.get();
         let find = || (is_wall(), self.work.get() - before);
         let (is_wall, work) = self.memo.is_wall(triangle, find);
-        let work = if self.is_shared { work } else { self.work.get() - before };
+        let work = if self.limit.is_shared { work } else { self.work.get() - before };
         self.left.set(self.left.get() - work);
         !is_wall
     }
@@ -286,7 +295,7 @@ const CONSIDERED: u32 = 1 << 14;
 /// Classifies a mesh by up to 4096 rays, and more at walls.
 pub fn kind(triangles: &impl RayTriangles) -> SurfaceKind {
     let memo = &PlaceMemo::default();
-    of_samples(&RayMesh::new(triangles, None, memo, WORK_OF_MESH), false)
+    of_samples(&RayMesh::new(triangles, None, memo, WallLimit::MESH), false)
 }
 
 /// Classifies a mesh. `is_closed`: each edge has as many half-edges one way as back, so there are no holes.

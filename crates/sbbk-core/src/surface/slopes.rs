@@ -10,6 +10,15 @@ use rustc_hash::FxHashMap;
 /// edges stop bodies. Lower: a polyhedron that rolls meets the next vertex late and is braked.
 pub(super) const BENDS: f64 = 2.0;
 
+/// Sine of the angle by which a neighbour may rise towards a direction and still count as no nearer,
+/// where the surface bends as much. Higher: bodies catch on edges between facets. Lower: faces that
+/// lie on each other, not quite flat, lose contacts.
+pub(super) const RISE: f64 = 0.05;
+
+/// [`RISE`] if the other feature is a face. Higher: blunt edges stop bodies that slide over
+/// them. Lower: a body that rocks from point to point gets the next point too late.
+pub(super) const RISE_TO_FACE: f64 = 0.3;
+
 /// Sine of the angle up to which triangles count as one plane, and directions as parallel to it.
 /// Higher: a nut locks on its bolt. Lower: flat sides end at rounding.
 pub(super) const FLAT: f64 = 1.0e-3;

@@ -7,7 +7,8 @@
 
 use std::ops::ControlFlow;
 
-use super::one_ring::{Around, Facets};
+use super::facets::Facets;
+use super::one_ring::Around;
 pub use super::triangle::{seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;

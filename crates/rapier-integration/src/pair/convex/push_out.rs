@@ -16,9 +16,8 @@ use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{BEHIND, LazySurface, is_covered};
 use crate::pair::query::ContactList;
 
-/// Depth of a contact, as a share of the part's radius, from which half of a part may be inside though the
-/// middle is outside, as of cones. Higher: cones stay in solids; lower: more searches for the
-/// nearest face.
+/// Least depth of a contact, in radii of the part, from which half of the part may be inside. The middle of a cone is outside
+/// then. Higher: cones stay in solids; lower: more searches for the nearest face.
 const DEEP: f64 = 0.1;
 
 impl<'q> ConvexQuery<'q> {

@@ -4,7 +4,7 @@ use super::shapes::sheet;
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::Vec3;
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Facets, MinimumCones, Side};
+use sbbk_core::surface::{Around, Facets, Side, minimum_cones};
 
 fn random_mesh(random: &mut Random, i: u64) -> Soup {
     match i % 5 {
@@ -35,7 +35,7 @@ fn local_minima_are_within_the_cones_of_their_triangles() {
             let Some(direction) = direction.try_normalize() else { continue };
             let vertex = (random.bits() % 3) as u8;
             let feature = [Feature::Vertex(vertex), Feature::Edge(vertex)][(i % 2) as usize];
-            let cones = MinimumCones::of(&around, triangle);
+            let cones = minimum_cones(&around.facets, triangle);
             for (to_face, other) in [Feature::Edge(0), Feature::Face].into_iter().enumerate() {
                 let contact = Some((around.facets.corner(3 * triangle, vertex.into()), other));
                 let least = cones.least_square(to_face == 1);
@@ -58,7 +58,7 @@ fn triangles_within_a_flat_floor_have_narrow_cones() {
     let surface = floor.surface();
     let around = Around { facets: floor.facets(&surface), side: Side::Sheet };
     for (triangle, corners) in (0..).zip(&floor.triangles) {
-        let least = MinimumCones::of(&around, triangle).least_square(true);
+        let least = minimum_cones(&around.facets, triangle).least_square(true);
         let is_within = corners.iter().all(|&corner| {
             let Vec3 { x, y, .. } = floor.vertices[corner as usize];
             [x, y].into_iter().all(|at| at.abs() < 0.9)
