@@ -232,23 +232,30 @@ impl DeepIsland<'_> {
     fn way_across(&self, contour: &Contour, points: &Points) -> Option<Way> {
         let Contour { middle, normal, is_flat, .. } = *contour;
         if is_flat {
-            return self.way_along(normal, points);
+            return self.way_along(normal, points, f64::INFINITY);
         }
         let normals = self.exits(middle, normal).map(|[(_, one), (_, two)]| [one, -two]);
         let ways = normals.into_iter().flatten().chain(self.nearest_ways(middle));
         let ways = ways.filter(|way| way.dot(normal) > NEAR_AREA_VECTOR).chain([normal]);
-        let ways = ways.filter_map(|way| self.way_along(way, points));
-        ways.min_by(|a, b| a.length.total_cmp(&b.length))
+        ways.fold(None, |shortest: Option<Way>, way| {
+            let limit = shortest.as_ref().map_or(f64::INFINITY, |known| known.length);
+            self.way_along(way, points, limit).or(shortest)
+        })
     }
 
-    /// Returns the way along a direction; `None` if it leads out from no point.
-    fn way_along(&self, normal: DVec3, points: &Points) -> Option<Way> {
-        let exits = points.iter().map(|(_, point)| {
-            self.exits(*point, normal).map(|exits| exits.map(|(length, _)| length))
-        });
-        let exits: ArrayVec<_, MOST_POINTS> = exits.collect();
-        let lengths = exits.iter().flatten().map(|[length1, length2]| length1 + length2);
-        Some(Way { normal, length: lengths.reduce(f64::max)?, exits })
+    /// Returns the way along a direction. `None` if the direction leads out from no point, or if the way is not shorter than
+    /// a limit.
+    fn way_along(&self, normal: DVec3, points: &Points, limit: f64) -> Option<Way> {
+        let (mut length, mut exits) = (f64::NEG_INFINITY, ArrayVec::new());
+        for (_, point) in points {
+            let lengths = self.exits(*point, normal).map(|exits| exits.map(|(length, _)| length));
+            exits.push(lengths);
+            length = lengths.map_or(length, |[length1, length2]| length.max(length1 + length2));
+            if length >= limit {
+                return None;
+            }
+        }
+        (length >= 0.0).then_some(Way { normal, length, exits })
     }
 
     /// Returns directions in which the nearest points of both surfaces lead shape 2 out. `point` is in both solids.

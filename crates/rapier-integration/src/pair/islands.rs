@@ -2,6 +2,7 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use sbbk_core::collections::UnionFind;
+use sbbk_core::contact::DoubleCone;
 
 /// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
 /// contacts that push each island apart.
@@ -62,7 +63,11 @@ pub(super) struct IslandWay {
 impl IslandWay {
     /// Returns true if a contact of triangles pushes along the way.
     fn has(self, normal: DVec3) -> bool {
-        self.normal.dot(normal) >= if self.is_exact { SAME_WAY } else { ALONG_WAY }
+        self.normal.dot(normal) >= self.least_cosine()
+    }
+
+    fn least_cosine(self) -> f64 {
+        if self.is_exact { SAME_WAY } else { ALONG_WAY }
     }
 }
 
@@ -104,6 +109,8 @@ pub(super) struct Crossing {
     pub(super) greatest: f64,
     /// True if the first pass found a contact.
     pub(super) is_reliable: bool,
+    /// False if no axis of the pair is extremal.
+    pub(super) has_extremal: bool,
     /// Normal of the contact of the first pass, from mesh 1 to mesh 2.
     pub(super) normal: DVec3,
     /// Depth of the contact of the first pass.
@@ -363,6 +370,12 @@ impl OverlapIslands {
             };
             self.leads_apart(normal) && support.is_none_or(agrees)
         }
+    }
+
+    /// Returns the cone of normals that [`agrees`](Self::agrees) accepts, if the island has a way out.
+    pub(super) fn cone(&mut self, pair: [u32; 2]) -> Option<DoubleCone> {
+        let way = self.support_of(pair)?.way?;
+        Some(DoubleCone { axis: way.normal, least_square: way.least_cosine().powi(2) })
     }
 
     /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against

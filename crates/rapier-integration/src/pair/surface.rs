@@ -15,9 +15,7 @@
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use parry3d::query::Ray;
-use sbbk_core::contact::{
-    Feature, ManifoldPoints, TriangleContact, extremal_penetration, outward_penetration,
-};
+use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleContact};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
@@ -207,9 +205,8 @@ impl<'a> SurfaceFilter<'a> {
         let shallow = self.shapes.filter_unit();
         let greatest = SHALLOW * contact.distance.abs().max(shallow);
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let cones = [0, 1].map(|i| self.least_square(i));
-        let triangles = self.local.corners.each_ref();
-        let good = extremal_penetration(triangles, is_solid, cones, ends, greatest, clipped);
+        let extremal = self.outward(is_solid).extremal(ends, greatest, clipped);
+        let good = extremal.contact();
         if good.is_none() && !is_crossing && self.is_touching(contact, TOUCHING) {
             return Verdict::None;
         }
@@ -225,6 +222,7 @@ impl<'a> SurfaceFilter<'a> {
             is_crossing,
             greatest,
             is_reliable: good.is_some(),
+            has_extremal: extremal != Extremal::None,
             normal,
             depth,
             outward: self.surfaces.each_ref().map(|surface| outward(surface.as_ref()?.side)),
@@ -243,10 +241,10 @@ impl<'a> SurfaceFilter<'a> {
         clipped: &mut ManifoldPoints,
     ) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let (triangles, is_solid) = (self.local.corners.each_ref(), self.are_solid());
-        let cones = [0, 1].map(|i| self.least_square(i));
-        let agrees = islands.agrees(self.pair);
-        let contact = outward_penetration(triangles, is_solid, cones, ends, agrees, clipped)?;
+        let (cone, agrees) = (islands.cone(self.pair), islands.agrees(self.pair));
+        let has_extremal = crossing.has_extremal;
+        let outward = self.outward(self.are_solid());
+        let contact = outward.least(has_extremal, ends, cone, agrees, clipped)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {
@@ -265,6 +263,12 @@ impl<'a> SurfaceFilter<'a> {
         };
         let contact = TriangleContact { distance: contact.distance - beyond.min(most), ..contact };
         Some(TriangleSurfaceContact { contact, source: ContactSource::OutwardAxis })
+    }
+
+    /// Returns the axes that lead out of the shapes.
+    fn outward(&self, is_solid: [bool; 2]) -> Outward<'_> {
+        let cones = [0, 1].map(|i| self.least_square(i));
+        Outward::new(self.local.corners.each_ref(), is_solid, cones)
     }
 
     fn are_solid(&self) -> [bool; 2] {

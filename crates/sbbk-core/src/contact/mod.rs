@@ -56,7 +56,7 @@ mod triangle;
 pub use clip::{ManifoldPoint, ManifoldPoints, clip, push_closest};
 pub use feature::{Feature, FeaturePair};
 pub use generate::{contact, contact_from};
-pub use penetration::{extremal_penetration, outward_penetration};
+pub use penetration::{DoubleCone, Extremal, Outward};
 
 use closest::Closest;
 use glamx::DVec3;

@@ -12,6 +12,7 @@ use super::touching::deepest;
 use super::triangle::{NEAR_PARALLEL, NEXT, PREVIOUS, Triangle};
 use arrayvec::ArrayVec;
 use glamx::DVec3;
+use std::ops::ControlFlow;
 
 /// Sine of the angle by which an axis may lean into a solid. Higher: walls push up bodies that they
 /// do not carry. Lower: an edge of a box that stands not quite upright no longer pushes up.
@@ -29,110 +30,164 @@ const SHOWN: f64 = 0.9;
 /// sizes. Higher: edges count as level. Lower: rounding picks a vertex.
 const LEVEL: f64 = 1.0e-6;
 
-/// Returns the contact of two overlapping triangles along the outward axis of least overlap among the extremal ones, if
-/// that is at most `most`.
-///
-/// `solid` is true for triangles of a solid, whose normals point outside. `is_extremal` returns true if no neighbour of a
-/// feature of triangle 1 (0) or 2 (1) is farther in a direction. `cones` has squares of the least cosines between the normals and
-/// extremal directions.
-///
-/// The deepest points give the distance. `out` gets the contact points, as from [`clip`](super::clip). Returns `None` if these show
-/// less than the overlap.
-pub fn extremal_penetration(
-    triangles: [&[DVec3; 3]; 2],
+/// Two overlapping triangles, and the axes along which they leave each other and the solids.
+pub struct Outward<'t> {
+    triangles: [Triangle<'t>; 2],
+    normals: [DVec3; 2],
     solid: [bool; 2],
     cones: [f64; 2],
-    is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-    most: f64,
-    out: &mut ManifoldPoints,
-) -> Option<TriangleContact> {
-    let pair = Outward::new(triangles.map(Triangle::new), solid);
-    let (gap, normal) = pair.extremal_axis(cones, most / SHOWN, is_extremal)?;
-    let contact = pair.contact_along(normal, out)?;
-    (contact.distance <= SHOWN * gap && contact.distance >= -most).then_some(contact)
 }
 
-/// Returns the contact of two overlapping triangles along the outward axis of least overlap, if a contact with that normal
-/// `may_count`. Extremal axes come first. The parameters are those of [`extremal_penetration`].
-pub fn outward_penetration(
-    triangles: [&[DVec3; 3]; 2],
-    solid: [bool; 2],
-    cones: [f64; 2],
-    is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-    may_count: impl Fn(DVec3) -> bool,
-    out: &mut ManifoldPoints,
-) -> Option<TriangleContact> {
-    let pair = Outward::new(triangles.map(Triangle::new), solid);
-    let mut may_any = false;
-    pair.for_each(|direction, _| may_any = may_any || may_count(direction.normalize()));
-    if !may_any {
-        return None;
+/// Extremal contact of two triangles, see [`Outward::extremal`].
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Extremal {
+    /// The contact along the extremal axis of least overlap.
+    Contact(TriangleContact),
+    /// Extremal axes have too large overlaps, or are not known.
+    Unknown,
+    /// No axis is extremal.
+    None,
+}
+
+impl Extremal {
+    /// Returns the contact.
+    pub fn contact(self) -> Option<TriangleContact> {
+        if let Self::Contact(contact) = self { Some(contact) } else { None }
     }
-    let extremal = pair.extremal_axis(cones, f64::INFINITY, is_extremal);
-    let (_, normal) = extremal.or_else(|| pair.least_axis())?;
-    may_count(normal).then(|| pair.contact_along(normal, out))?
+}
+
+/// Directions, and their opposites, near an axis.
+#[derive(Copy, Clone, Debug)]
+pub struct DoubleCone {
+    /// Unit vector.
+    pub axis: DVec3,
+    /// Square of the least cosine between the axis and a direction.
+    pub least_square: f64,
+}
+
+impl DoubleCone {
+    /// Allowance for rounding of directions, in squares of sines.
+    const ROUNDING: f64 = 1.0e-6;
+
+    /// Returns true unless an edge is perpendicular to no direction of the cone.
+    fn may_be_perpendicular(self, edge: DVec3) -> bool {
+        let height = edge.dot(self.axis);
+        height * height <= (1.0 - self.least_square + Self::ROUNDING) * edge.length_squared()
+    }
 }
 
 /// The gap along an axis, and the axis.
 type OutwardAxis = (f64, DVec3);
 
-/// Two overlapping triangles, whose axes lead out of solids.
-struct Outward<'t> {
-    triangles: [Triangle<'t>; 2],
-    normals: [DVec3; 2],
-    solid: [bool; 2],
-}
-
 impl<'t> Outward<'t> {
-    fn new(triangles: [Triangle<'t>; 2], solid: [bool; 2]) -> Self {
+    /// `solid` is true for triangles of a solid, whose normals point outside. `cones` has squares of the least cosines
+    /// between the normals and extremal directions.
+    pub fn new(triangles: [&'t [DVec3; 3]; 2], solid: [bool; 2], cones: [f64; 2]) -> Self {
+        let triangles = triangles.map(Triangle::new);
         let normals = [0, 1].map(|i| triangles[i].area_vector().normalize_or_zero());
-        Self { triangles, normals, solid }
+        Self { triangles, normals, solid, cones }
     }
 
-    /// Returns true if no axis is in both cones, given by squares of cosines.
-    fn are_cones_apart(&self, [square1, square2]: [f64; 2]) -> bool {
-        let [normal1, normal2] = self.normals;
+    /// Returns the contact along the extremal axis of least overlap, if that is at most `most`.
+    ///
+    /// `is_extremal` returns true if no neighbour of a feature of triangle 1 (0) or 2 (1) is farther in a direction.
+    /// The deepest points give the distance; if these show less than the overlap, there is no contact. `out` gets the
+    /// contact points, as from [`clip`](super::clip).
+    pub fn extremal(
+        &self,
+        is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
+        most: f64,
+        out: &mut ManifoldPoints,
+    ) -> Extremal {
+        let (axis, are_all) = self.extremal_axis(most / SHOWN, is_extremal);
+        let Some((gap, normal)) = axis else {
+            return if are_all { Extremal::None } else { Extremal::Unknown };
+        };
+        let contact = self.contact_along(normal, out);
+        let is_shown = |contact: &TriangleContact| {
+            contact.distance <= SHOWN * gap && contact.distance >= -most
+        };
+        contact.filter(is_shown).map_or(Extremal::Unknown, Extremal::Contact)
+    }
+
+    /// Returns the contact along the outward axis of least overlap, if a contact with that normal `may_count`. Extremal axes
+    /// come first.
+    ///
+    /// `has_extremal` is false if no axis is extremal. Contacts that count are within `cone`, if given. The other parameters
+    /// are those of [`extremal`](Self::extremal).
+    pub fn least(
+        &self,
+        has_extremal: bool,
+        is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
+        cone: Option<DoubleCone>,
+        may_count: impl Fn(DVec3) -> bool,
+        out: &mut ManifoldPoints,
+    ) -> Option<TriangleContact> {
+        let mut widest = None;
+        self.for_each(cone.as_slice(), |direction, _| {
+            let (gap, axis) = self.axis(direction);
+            if may_count(axis) {
+                widest = Some(widest.map_or(gap, |known: f64| known.max(gap)));
+            }
+            ControlFlow::Continue(())
+        });
+        let widest = widest?;
+        let extremal =
+            if has_extremal { self.extremal_axis(f64::INFINITY, is_extremal).0 } else { None };
+        let (_, normal) = extremal.or_else(|| self.least_axis(widest))?;
+        may_count(normal).then(|| self.contact_along(normal, out))?
+    }
+
+    /// Returns true if no axis is in both cones.
+    fn are_cones_apart(&self) -> bool {
+        let ([normal1, normal2], [square1, square2]) = (self.normals, self.cones);
         // The cosine of the sum of both angles.
         let least = (square1 * square2).sqrt() - ((1.0 - square1) * (1.0 - square2)).sqrt();
         normal1.dot(normal2).abs() < least
     }
 
-    /// Returns the extremal axis of least overlap, if that is at most `most`.
+    /// Returns the extremal axis of least overlap, if that is at most `most`. Also returns true if no extremal axis
+    /// has more.
     fn extremal_axis(
         &self,
-        cones: [f64; 2],
         most: f64,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-    ) -> Option<OutwardAxis> {
-        let mut axes = ArrayVec::<OutwardAxis, 22>::new();
-        let mut add = |direction: DVec3, heights: [f64; 2]| {
+    ) -> (Option<OutwardAxis>, bool) {
+        if self.are_cones_apart() {
+            return (None, true);
+        }
+        let (mut axes, mut are_all) = (ArrayVec::<OutwardAxis, 22>::new(), true);
+        let cones =
+            [0, 1].map(|i| DoubleCone { axis: self.normals[i], least_square: self.cones[i] });
+        self.for_each(&cones, |direction, heights| {
             let square = direction.length_squared();
             // Before the division: most directions end here.
-            if (0..2).all(|i| heights[i] * heights[i] >= cones[i] * square) {
+            if (0..2).all(|i| heights[i] * heights[i] >= self.cones[i] * square) {
                 let (gap, axis) = self.axis(direction);
+                are_all &= gap >= -most;
                 if gap >= -most {
                     axes.push((gap, axis));
                 }
             }
-        };
-        if !self.are_cones_apart(cones) {
-            self.for_each(&mut add);
-        }
+            ControlFlow::Continue(())
+        });
         axes.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
-        axes.into_iter().find(|(_, axis)| {
+        let axis = axes.into_iter().find(|(_, axis)| {
             let ways = [*axis, -*axis];
             (0..2).all(|i| is_extremal(i, farthest(&self.triangles[i], ways[i]), ways[i]))
-        })
+        });
+        (axis, are_all)
     }
 
-    /// Returns the outward axis of least overlap.
-    fn least_axis(&self) -> Option<OutwardAxis> {
+    /// Returns the outward axis of least overlap. Returns `None` if that is less than the overlap of a gap, `widest`.
+    fn least_axis(&self, widest: f64) -> Option<OutwardAxis> {
         let mut least: Option<OutwardAxis> = None;
-        self.for_each(|direction, _| {
+        self.for_each(&[], |direction, _| {
             let axis = self.axis(direction);
             least = least.filter(|known| known.0 >= axis.0).or(Some(axis));
+            if axis.0 > widest { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        least
+        least.filter(|least| least.0 <= widest)
     }
 
     /// Returns the gap along a direction of any length, and the axis.
@@ -143,8 +198,13 @@ impl<'t> Outward<'t> {
         (min2 - max1, axis)
     }
 
-    /// Calls `visit` with each direction that leads out of the solids, of any length, and its heights along both normals.
-    fn for_each(&self, mut visit: impl FnMut(DVec3, [f64; 2])) {
+    /// Calls `visit` with each direction that leads out of the solids, of any length, and its heights along both normals,
+    /// until `visit` breaks. May leave out directions beyond one of the cones.
+    fn for_each(
+        &self,
+        cones: &[DoubleCone],
+        mut visit: impl FnMut(DVec3, [f64; 2]) -> ControlFlow<()>,
+    ) {
         let [t1, t2] = &self.triangles;
         let [normal1, normal2] = self.normals;
         let mut consider = |direction: DVec3| {
@@ -153,20 +213,25 @@ impl<'t> Outward<'t> {
             let is_out =
                 |i: usize| !self.solid[i] || heights[i] >= 0.0 || heights[i] * heights[i] <= most;
             if is_out(0) && is_out(1) {
-                visit(direction, heights);
+                visit(direction, heights)
+            } else {
+                ControlFlow::Continue(())
             }
         };
         for normal in [normal1, normal2] {
-            if normal != DVec3::ZERO {
-                consider(normal);
-                consider(-normal);
+            if normal != DVec3::ZERO
+                && (consider(normal).is_break() || consider(-normal).is_break())
+            {
+                return;
             }
         }
+        let may_count = |edge: DVec3| cones.iter().all(|cone| cone.may_be_perpendicular(edge));
+        let [may_count1, may_count2] = [t1, t2].map(|t| t.edges.map(may_count));
         let (slopes1, slopes2) = (slopes(t1, normal2), slopes(t2, normal1));
         for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
             // Both edges have the sign of the axis if they are in front (see `axes.rs`).
             let (sign1, sign2) = (slopes1[i], slopes2[j]);
-            if sign1 * sign2 < 0.0 {
+            if !(may_count1[i] && may_count2[j]) || sign1 * sign2 < 0.0 {
                 continue;
             }
             let (e1, e2) = (t1.edges[i], t2.edges[j]);
@@ -176,11 +241,10 @@ impl<'t> Outward<'t> {
                 continue;
             }
             let sign = sign1 + sign2;
-            if sign >= 0.0 {
-                consider(cross);
-            }
-            if sign <= 0.0 {
-                consider(-cross);
+            if sign >= 0.0 && consider(cross).is_break()
+                || sign <= 0.0 && consider(-cross).is_break()
+            {
+                return;
             }
         }
     }

@@ -1,9 +1,9 @@
-//! `penetration_out_of_solid` against definitions that look at every axis.
+//! `Outward` against definitions that look at every axis.
 
 use crate::support::Random;
 use glamx::DVec3;
 use sbbk_core::contact::{
-    Feature, ManifoldPoints, TriangleContact, contact, extremal_penetration, outward_penetration,
+    DoubleCone, Extremal, Feature, ManifoldPoints, Outward, TriangleContact, contact,
 };
 
 type Triangle = [DVec3; 3];
@@ -15,15 +15,26 @@ fn penetration(
     solid: [bool; 2],
     ends: impl Fn(usize, Feature, DVec3) -> bool,
 ) -> Option<(TriangleContact, bool)> {
-    let mut points = ManifoldPoints::new();
-    let found = outward_penetration([t1, t2], solid, [0.0; 2], &ends, |_| true, &mut points);
-    let other = |normal: DVec3| found.is_some_and(|contact| contact.normal != normal);
-    assert_eq!(outward_penetration([t1, t2], solid, [0.0; 2], &ends, other, &mut points), None);
-    let mut find = |most| extremal_penetration([t1, t2], solid, [0.0; 2], &ends, most, &mut points);
-    let extremal = find(1e9);
+    let pair = Outward::new([t1, t2], solid, [0.0; 2]);
+    let least = |has_extremal: bool, cone: Option<DoubleCone>, least: f64| {
+        let mut points = ManifoldPoints::new();
+        let axis = cone.map_or(DVec3::ZERO, |cone| cone.axis);
+        pair.least(has_extremal, &ends, cone, |normal| normal.dot(axis) >= least, &mut points)
+    };
+    let found = least(true, None, 0.0);
+    let normal = found.map_or(DVec3::X, |contact| contact.normal);
+    for (turned, cosine, counts) in [(0.0, 0.9999, true), (0.2, 0.97, true), (0.3, 0.97, false)] {
+        let across = normal.any_orthonormal_vector();
+        let axis = normal * f64::cos(turned) + across * f64::sin(turned);
+        let cone = DoubleCone { axis, least_square: cosine * cosine };
+        assert_eq!(least(true, Some(cone), cosine), found.filter(|_| counts));
+    }
+    let find = |most| pair.extremal(&ends, most, &mut ManifoldPoints::new());
+    let extremal = find(1e9).contact();
     assert!(extremal.is_none() || extremal == found);
     for most in [0.001, 0.1, 10.0] {
-        assert_eq!(find(most), extremal.filter(|contact| contact.distance >= -most));
+        assert_eq!(find(most).contact(), extremal.filter(|contact| contact.distance >= -most));
+        assert!(find(most) != Extremal::None || least(false, None, 0.0) == found);
     }
     found.map(|contact| (contact, extremal.is_some()))
 }

@@ -10,6 +10,7 @@ fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>)
         is_crossing: true,
         greatest: 1.0,
         is_reliable,
+        has_extremal: is_reliable,
         normal,
         depth,
         outward: [sheet.is_none().then_some(1.0), Some(1.0)],
