@@ -116,6 +116,7 @@ pub(crate) struct Reduction {
     /// First contacts of patches, by part, by direction and then by place.
     seeds: Vec<ContactSummary>,
     pub(super) places: Vec<(Vec3, Real)>,
+    pub(super) beyond: Beyond,
     /// Points of the chosen contacts of a patch.
     pub(super) points: Vec<PatchPoint>,
 }
@@ -181,21 +182,23 @@ impl Reduction {
     }
 
     fn split_by_place(&mut self, plan: PatchPlan) {
-        let Self { members, seeds, places, .. } = self;
+        let Self { members, seeds, places, beyond, .. } = self;
         seeds.clear();
         let mut count = 0;
         for members in members.chunk_by_mut(|a, b| a.patch == b.patch) {
             places.clear();
             places.extend(members.iter().map(|Member { summary, .. }| summary.place()));
             let ContactSummary { normal, distance: deepest, .. } = members[0].summary;
-            let outermost = plan.outermost(places, normal);
+            let chosen = plan.outermost(places, normal, beyond);
             let first = seeds.len();
             for (i, Member { summary, patch, .. }) in members.iter_mut().enumerate() {
-                let is_needless = summary.distance - deepest > plan.equal_depth
-                    || outermost.beyond(summary.point) <= plan.size * plan.size;
-                *patch = if outermost.chosen.contains(&i) {
+                let mut is_needless = || {
+                    summary.distance - deepest > plan.equal_depth
+                        || beyond.squares()[i] <= plan.size * plan.size
+                };
+                *patch = if chosen.contains(&i) {
                     count
-                } else if is_needless {
+                } else if is_needless() {
                     NO_PATCH
                 } else {
                     let is_there =
@@ -224,51 +227,68 @@ fn seed_of(
     place as u32
 }
 
-/// Outermost points of a direction.
-pub(super) struct Outermost {
+/// Indices of points.
+pub(super) type Chosen = ArrayVec<usize, MOST_POINTS>;
+
+/// Memory for the distances of points from the convex hull of the chosen ones, seen along a normal.
+#[derive(Default)]
+pub(super) struct Beyond {
+    /// The points, seen along the normal.
+    flat: Vec<Vec3>,
+    /// Squares of the distances.
+    squares: Vec<Real>,
+    corners: ArrayVec<Vec3, MOST_POINTS>,
+    /// The chosen points that the distances are from. The last one may be missing.
+    known: usize,
     /// Unit vector across the contacts.
     normal: Vec3,
-    /// Indices of the points.
-    pub(super) chosen: ArrayVec<usize, MOST_POINTS>,
-    /// The chosen points, seen along the normal.
-    corners: ArrayVec<Vec3, MOST_POINTS>,
 }
 
-impl Outermost {
-    fn new(normal: Vec3) -> Self {
-        Self { normal, chosen: ArrayVec::new(), corners: ArrayVec::new() }
+impl Beyond {
+    fn begin(&mut self, points: &[(Vec3, Real)], normal: Vec3) {
+        let flat = |&(point, _): &(Vec3, Real)| point - normal.dot(point) * normal;
+        self.flat.clear();
+        self.flat.extend(points.iter().map(flat));
+        self.squares.clear();
+        self.squares.resize(points.len(), Real::INFINITY);
+        self.corners.clear();
+        (self.known, self.normal) = (0, normal);
     }
 
-    fn add(&mut self, index: usize, point: Vec3) {
-        self.chosen.push(index);
-        self.corners.push(self.flat(point));
+    fn add(&mut self, index: usize) {
+        self.corners.push(self.flat[index]);
     }
 
-    /// Returns a point as seen along the normal.
-    fn flat(&self, point: Vec3) -> Vec3 {
-        point - self.normal.dot(point) * self.normal
-    }
-
-    /// Returns the square of the distance from the convex hull of the chosen points, seen along the normal.
-    fn beyond(&self, point: Vec3) -> Real {
-        let (point, corners) = (self.flat(point), &self.corners[..]);
-        let side = |a: Vec3, b: Vec3| (b - a).cross(point - a).dot(self.normal);
-        let mut least = Real::INFINITY;
-        for (i, &a) in corners.iter().enumerate() {
-            least = least.min(a.distance_squared(point));
-            for (j, &b) in corners[..i].iter().enumerate() {
-                least = least.min(to_segment(a, b, point));
-                let is_inside = |c: &Vec3| {
-                    let sides = [side(a, b), side(b, *c), side(*c, a)];
-                    sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
-                };
-                if corners[..j].iter().any(is_inside) {
-                    return 0.0;
+    /// Returns the squares of the distances of all points.
+    fn squares(&mut self) -> &[Real] {
+        for (i, &corner) in self.corners.iter().enumerate().skip(self.known) {
+            let before = &self.corners[..i];
+            for (&point, square) in self.flat.iter().zip(&mut self.squares) {
+                if *square > 0.0 {
+                    *square = square.min(beyond(point, corner, before, self.normal));
                 }
             }
         }
-        least
+        self.known = self.corners.len();
+        &self.squares
     }
+}
+
+/// Returns the square of the distance of a point from the segments and triangles between a corner and others.
+fn beyond(point: Vec3, corner: Vec3, others: &[Vec3], normal: Vec3) -> Real {
+    let side = |a: Vec3, b: Vec3| (b - a).cross(point - a).dot(normal);
+    let mut least = corner.distance_squared(point);
+    for (i, &other) in others.iter().enumerate() {
+        least = least.min(to_segment(corner, other, point));
+        let is_inside = |third: &Vec3| {
+            let sides = [side(corner, other), side(other, *third), side(*third, corner)];
+            sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
+        };
+        if others[..i].iter().any(is_inside) {
+            return 0.0;
+        }
+    }
+    least
 }
 
 /// Returns the square of the distance of a point from a segment.
@@ -287,19 +307,23 @@ impl PatchPlan {
     /// Returns up to four of `points`, which have distances. The first one is deepest. The others
     /// extend the convex hull, seen along `normal`, as far as possible. Points that hover count as nearer. Lengths count
     /// by their squares: the corners of a slanted flat body still come first.
-    pub(super) fn outermost(self, points: &[(Vec3, Real)], normal: Vec3) -> Outermost {
-        let mut outermost = Outermost::new(normal);
+    pub(super) fn outermost(
+        self,
+        points: &[(Vec3, Real)],
+        normal: Vec3,
+        beyond: &mut Beyond,
+    ) -> Chosen {
         if points.len() <= MOST_POINTS {
-            (0..).zip(points).for_each(|(i, (point, _))| outermost.add(i, *point));
-            return outermost;
+            return (0..points.len()).collect();
         }
-        let (first, deepest) = points[0];
-        outermost.add(0, first);
+        beyond.begin(points, normal);
+        let (mut chosen, (_, deepest)) = (Chosen::from_iter([0]), points[0]);
+        beyond.add(0);
         let mut least = 0.0;
-        while !outermost.chosen.is_full() {
-            let weighed = points.iter().map(|&(point, distance)| {
+        while !chosen.is_full() {
+            let weighed = points.iter().zip(beyond.squares()).map(|((_, distance), square)| {
                 let hover = (distance - deepest).max(0.0) / self.equal_depth;
-                outermost.beyond(point) / (1.0 + hover)
+                square / (1.0 + hover)
             });
             let farthest = |most: (usize, Real), next: (usize, Real)| {
                 if next.1 > most.1 { next } else { most }
@@ -308,19 +332,19 @@ impl PatchPlan {
             if next == 0 {
                 break;
             }
-            outermost.add(next, points[next].0);
+            chosen.push(next);
+            beyond.add(next);
             if least == 0.0 {
                 least = LINE * LINE * square;
             }
         }
         // Points about as far from the others must not change places from step to step.
-        if let [first, second, third, _] = outermost.corners[..]
+        if let [first, second, third, _] = beyond.corners[..]
             && (second - first).cross(third - first).dot(normal) > 0.0
         {
-            outermost.chosen.swap(2, 3);
-            outermost.corners.swap(2, 3);
+            chosen.swap(2, 3);
         }
-        outermost
+        chosen
     }
 }
 
@@ -418,7 +442,7 @@ mod tests {
             places.iter().map(|&[x, z, distance]| (Vec3::new(x, 0.0, z), distance)).collect()
         };
         let chosen = |points: &[(Vec3, Real)]| {
-            let mut chosen = PLAN.outermost(points, Vec3::Y).chosen;
+            let mut chosen = PLAN.outermost(points, Vec3::Y, &mut Beyond::default());
             chosen.sort_unstable();
             chosen.to_vec()
         };

@@ -298,12 +298,12 @@ pub(super) fn write_patches<Q, M, C>(
     }));
     reduction.reduce(plan);
     writer.list_old_points();
-    let Reduction { members, places, points: patch_points, .. } = reduction;
+    let Reduction { members, places, points: patch_points, beyond, .. } = reduction;
     for members in members.chunk_by(|a, b| a.patch == b.patch) {
         places.clear();
         places.extend(members.iter().map(|member| member.summary.place()));
         patch_points.clear();
-        for member in plan.outermost(places, members[0].summary.normal).chosen {
+        for member in plan.outermost(places, members[0].summary.normal, beyond) {
             let contact = members[member].contact;
             let of = &contacts[contact as usize];
             query.points(of, scratch, points);
@@ -321,7 +321,7 @@ pub(super) fn write_patches<Q, M, C>(
         patch_points.swap(0, deepest);
         places.clear();
         places.extend(patch_points.iter().map(|point| (point.point.local_p1, distance(point))));
-        let mut chosen = plan.outermost(places, patch_points[0].normals[0]).chosen;
+        let mut chosen = plan.outermost(places, patch_points[0].normals[0], beyond);
         while !chosen.is_empty() {
             write_patch(plan, patch_points, &mut chosen, writer, |contact| contacts[contact].0);
         }

@@ -54,7 +54,7 @@ impl Solid for CuboidSupport {
 
     /// The slope is linear between the planes of the box's faces.
     #[inline(always)]
-    fn near_edge(&self, start: DVec3, edge: DVec3, _: f64) -> OffsetPoint {
+    fn near_edge(&self, start: DVec3, edge: DVec3, _: f64, _: f64) -> OffsetPoint {
         let half = self.0;
         let at = |t: f64| OffsetPoint::of(self, start + edge * t);
         let (mut low, mut high) = (0.0, 1.0);

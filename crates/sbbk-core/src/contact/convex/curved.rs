@@ -128,9 +128,17 @@ impl<const IS_CONE: bool> Solid for TurnedSupport<IS_CONE> {
     }
 
     #[inline(always)]
-    fn likely(&self, start: DVec3, edge: DVec3) -> f64 {
-        let lean = if IS_CONE { self.radius / (2.0 * self.half_height) } else { 0.0 };
-        near_slope(start, edge, lean)
+    fn breaks(&self, start: DVec3, edge: DVec3) -> [f64; 5] {
+        let Self { half_height, radius } = *self;
+        let lean = if IS_CONE { radius / (2.0 * half_height) } else { 0.0 };
+        // Over the rim.
+        let level_squared = edge.x * edge.x + edge.z * edge.z;
+        let to_axis = -(start.x * edge.x + start.z * edge.z) / level_squared;
+        let beside = (start.x * edge.z - start.z * edge.x).powi(2) / level_squared;
+        let half_chord = ((radius * radius - beside) / level_squared).sqrt();
+        let [to_base, to_top] = [-half_height, half_height].map(|end| (end - start.y) / edge.y);
+        let nearest = near_slope(start, edge, lean);
+        [nearest, to_axis - half_chord, to_axis + half_chord, to_base, to_top]
     }
 }
 

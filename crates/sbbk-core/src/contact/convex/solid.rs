@@ -14,7 +14,7 @@ const STEPS: u32 = 60;
 
 /// Slope of the squared distance that ends a search along an edge, as a share of the squared
 /// distance. Directions are off by about as much.
-const LEVEL: f64 = 1.0e-12;
+const LEVEL: f64 = 1.0e-9;
 
 /// Greatest such slope if rounding moves the slope by more than `LEVEL`: a tenth of the share that
 /// a proof may leave open.
@@ -31,72 +31,103 @@ pub(super) trait Solid: SupportMap {
     /// The way from the shape to a point; zero inside.
     fn outside(&self, point: DVec3) -> DVec3;
 
-    /// A guess of the place along an edge where the solid is nearest, as a share of the edge; any
-    /// number.
+    /// Places along an edge, as shares of the edge, near which the edge is nearest or passes from one part of the surface to
+    /// another; any numbers.
     #[inline(always)]
-    fn likely(&self, _start: DVec3, _edge: DVec3) -> f64 {
-        0.5
+    fn breaks(&self, _start: DVec3, _edge: DVec3) -> [f64; 5] {
+        [f64::NAN; 5]
     }
 
-    /// The point of an edge that is nearest, or one that is within `touching`. The slope of the
-    /// squared distance rises along the edge.
+    /// The point of an edge that is nearest, or one that is within `touching`. Any point of the edge if none is nearer than
+    /// the square root of `least`. The slope of the squared distance rises along the edge.
     #[inline(always)]
-    fn near_edge(&self, start: DVec3, edge: DVec3, touching: f64) -> OffsetPoint {
+    fn near_edge(&self, start: DVec3, edge: DVec3, touching: f64, least: f64) -> OffsetPoint {
         let rounding = ROUNDING * touching * edge.length();
         let at = |t: f64| {
             let near = OffsetPoint::of(self, start + edge * t);
-            (near, near.from_shape.dot(edge))
+            EdgePoint { t, near, slope: near.from_shape.dot(edge) }
         };
-        let is_end = |near: &OffsetPoint, slope: f64| {
+        let is_end = |EdgePoint { near, slope, .. }: &EdgePoint| {
             let level = (LEVEL * near.squared).max(rounding.min(NEARLY_LEVEL * near.squared));
             slope.abs() <= level || near.squared <= touching * touching
         };
-        let ((first, mut low_slope), (last, mut high_slope)) = (at(0.0), at(1.0));
-        if low_slope >= 0.0 || is_end(&first, low_slope) {
-            return first;
+        let (mut low, mut high) = (at(0.0), at(1.0));
+        if low.slope >= 0.0 || is_end(&low) {
+            return low.near;
         }
-        if high_slope <= 0.0 || is_end(&last, high_slope) {
-            return last;
+        if high.slope <= 0.0 || is_end(&high) {
+            return high.near;
         }
-        // First a guess. Then the rule of false position; an end that stays counts half. Every third
-        // step is half the way: where the edge touches, the slope rises from nothing.
-        let (mut low, mut high, mut side) = (0.0, 1.0, 0);
-        let mut nearest = if first.squared < last.squared { first } else { last };
+        let mut guesses = self.breaks(start, edge).into_iter();
+        // Cubic steps in turns of the distance and of its square: one has a smooth minimum. A step halves the part of the
+        // edge if three have not.
+        let mut most = 1.0;
         for step in 0..=STEPS {
-            let t = if step == 0 {
-                let likely = self.likely(start, edge);
-                // Also not a number.
-                let is_between = likely > low && likely < high;
-                if !is_between {
-                    continue;
-                }
-                likely
-            } else if step % 3 == 0 {
-                0.5 * (low + high)
-            } else {
-                high - high_slope * (high - low) / (high_slope - low_slope)
-            };
-            let (near, slope) = at(t);
-            nearest = near;
-            if is_end(&near, slope) || !(high - low > PART && t > low && t < high) {
+            if low.bound(&high) > least {
                 break;
             }
-            if slope < 0.0 {
-                (low, low_slope) = (t, slope);
-                if side < 0 {
-                    high_slope *= 0.5;
-                }
-                side = -1;
+            let is_between = |t: &f64| *t > low.t && *t < high.t;
+            let halfway = 0.5 * (low.t + high.t);
+            let t = guesses.find(is_between).unwrap_or_else(|| match step {
+                _ if step % 3 == 0 && high.t - low.t > most => halfway,
+                _ if step % 2 == 0 => minimum(low.squared(), high.squared()),
+                _ => minimum(low.distance(), high.distance()),
+            });
+            if step % 3 == 0 {
+                most = 0.5 * (high.t - low.t);
+            }
+            let middle = at(if is_between(&t) { t } else { halfway });
+            if is_end(&middle) || high.t - low.t <= PART {
+                return middle.near;
+            }
+            if middle.slope < 0.0 {
+                low = middle;
             } else {
-                (high, high_slope) = (t, slope);
-                if side > 0 {
-                    low_slope *= 0.5;
-                }
-                side = 1;
+                high = middle;
             }
         }
-        nearest
+        if low.near.squared < high.near.squared { low.near } else { high.near }
     }
+}
+
+/// A point of an edge, and half the slope of the squared distance from the solid there.
+struct EdgePoint {
+    /// Share of the edge.
+    t: f64,
+    near: OffsetPoint,
+    slope: f64,
+}
+
+impl EdgePoint {
+    /// Returns a lower bound of the squared distance between two points. The distance is convex: it is above both
+    /// tangents.
+    #[inline(always)]
+    fn bound(&self, high: &Self) -> f64 {
+        let [fall, rise] = [-self.slope, high.slope];
+        let way = 2.0 * fall * rise * (high.t - self.t);
+        (self.near.squared * rise + high.near.squared * fall - way) / (fall + rise)
+    }
+
+    /// Returns the place, the squared distance there, and its slope.
+    #[inline(always)]
+    fn squared(&self) -> [f64; 3] {
+        [self.t, self.near.squared, 2.0 * self.slope]
+    }
+
+    /// Returns the place, the distance there, and its slope.
+    #[inline(always)]
+    fn distance(&self) -> [f64; 3] {
+        let distance = self.near.squared.sqrt();
+        [self.t, distance, self.slope / distance]
+    }
+}
+
+/// Returns the place of the minimum of a cubic function between two places, with values that fall and rise there.
+#[inline(always)]
+fn minimum([low, at_low, fall]: [f64; 3], [high, at_high, rise]: [f64; 3]) -> f64 {
+    let mean = rise + fall - 3.0 * (at_high - at_low) / (high - low);
+    let root = (mean * mean - fall * rise).sqrt();
+    high - (high - low) * (rise + root - mean) / (rise - fall + 2.0 * root)
 }
 
 /// A point of a triangle and the way to it from the nearest point of a solid.
@@ -202,7 +233,7 @@ impl<'a, S: Solid> TriangleAndSolid<'a, S> {
                 continue;
             }
             let (start, edge) = (self.triangle[j], self.edges[j]);
-            let other = self.solid.near_edge(start, edge, self.doubtful());
+            let other = self.solid.near_edge(start, edge, self.doubtful(), nearest.squared);
             if other.squared < nearest.squared {
                 nearest = other;
             }
