@@ -1,14 +1,13 @@
 //! Queries of two meshes over Parry's BVHs: best-first search for a pair of triangles, down both at once.
 
 use std::cell::Cell;
-use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
 use glamx::{DMat3, DVec3, Vec3};
 use parry3d::math::{Real, Vector};
 use parry3d::partitioning::{BvhNodeIndex, TraversalAction};
-use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair};
+use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair, best_first};
 use sbbk_core::traverse::Placement;
 
 use crate::mesh::MeshView;
@@ -126,35 +125,30 @@ impl BvhSearch<'_> {
         bound: impl Fn(&PlacedBox, &PlacedBox) -> f64,
         mut visit: impl FnMut([u32; 2], f64) -> Option<f64>,
     ) {
-        let roots = [0, 1].map(|i| self.root(i));
-        let mut stack = Vec::with_capacity(64);
-        stack.push((f64::NEG_INFINITY, roots));
-        while let Some((key, [node1, node2])) = stack.pop() {
+        let roots = (f64::NEG_INFINITY, [0, 1].map(|i| self.root(i)));
+        best_first(&mut Vec::with_capacity(64), roots, |key, [node1, node2], stack| {
             // A bound that is NaN bounds nothing.
             if key > limit {
-                continue;
+                return ControlFlow::Continue(());
             }
             if let (Some(triangle1), Some(triangle2)) = (node1.triangle, node2.triangle) {
                 limit =
                     visit([triangle1, triangle2], limit).map_or(limit, |least| least.min(limit));
-                continue;
+                return ControlFlow::Continue(());
             }
             let is_first = node1.triangle.is_none()
                 && (node2.triangle.is_some() || node1.bounds.size() >= node2.bounds.size());
             let parent = if is_first { &node1 } else { &node2 };
-            let children = self.children(usize::from(!is_first), parent).into_iter();
-            let pairs =
-                children.map(|child| if is_first { [child, node2] } else { [node1, child] });
-            let keyed = pairs.map(|[one, two]| (bound(&one.bounds, &two.bounds), [one, two]));
-            let mut keyed: ArrayVec<_, 2> = keyed.collect();
-            if let [(first, _), (second, _)] = keyed[..]
-                && first < second
-            {
-                keyed.swap(0, 1);
+            for child in self.children(usize::from(!is_first), parent) {
+                let pair @ [one, two] = if is_first { [child, node2] } else { [node1, child] };
+                let key = bound(&one.bounds, &two.bounds);
+                if key > limit {
+                    continue;
+                }
+                stack.push((key, pair));
             }
-            let is_beyond = |key: f64| key.partial_cmp(&limit) == Some(Ordering::Greater);
-            stack.extend(keyed.into_iter().filter(|(key, _)| !is_beyond(*key)));
-        }
+            ControlFlow::Continue(())
+        });
     }
 
     /// Returns the pair of triangles with the least signed distance within `limit`, or one that

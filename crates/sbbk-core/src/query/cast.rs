@@ -11,18 +11,29 @@
 //!
 //! never passes the first time of impact. There is no impact if the distance no longer falls. While
 //! the closest features stay the same and include a face or are two edges, the distance is linear
-//! in time and one step arrives. Over two meshes, a search with the bounds of `sweep.rs` finds the
+//! in time and one step arrives. Over two meshes, a search with lower bounds of times finds the
 //! earliest of all pairs.
+//!
+//! The later of two bounds counts. Boxes that move along a line overlap on each axis of frame 1
+//! during an interval, and on all three during the intersection (the slabs of a ray against the
+//! Minkowski sum). Volumes with a gap need at least the gap over the speed.
+//!
+//! # Rounding
+//!
+//! The offset and the reach come from [`PairFrame`], conservative by its rounding. The velocity is
+//! exact in frame 1. A quotient loses at most `γ_4`, and the target distance added to the reach
+//! `γ_2`. Intervals start earlier and end later by `γ_8`.
 
 use glamx::{DVec3, Vec3};
+use wide::f32x4;
 
 use crate::contact::{TriangleContact, contact};
-use crate::traverse::{PairFrame, Placement};
-use crate::tree::{LeafBatch, Tree};
+use crate::simd::Spread;
+use crate::traverse::{Along, Compare, NodeLanes, PairFrame, Placement, within};
+use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 
-use super::seek::{BestFirst, FOUND, SearchScratch, seek};
-use super::sweep::Sweep;
+use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, TrianglePair};
 
 /// The definition of an impact.
@@ -73,52 +84,34 @@ pub fn cast(
     }
     let mut frame = PairFrame::new(trees, placement, 0.0);
     let speed = velocity.as_dvec3().length();
-    let sweep = Sweep {
+    let mut sweep = Sweep {
         frame: &mut frame,
         velocity,
         inverse_speed: ((1.0 / speed) as f32) * (1.0 - gamma(4)),
         target: target_distance * (1.0 + gamma(4)),
         limit: max_time.min(f32::MAX),
     };
-    let latest = f64::from(max_time);
-    let mut search = CastSearch {
-        sweep,
-        placement,
-        velocity: velocity.as_dvec3(),
-        options,
-        latest,
-        found: None,
-        counts,
-    };
-    seek(trees, &mut search, scratch);
-    search.found
-}
-
-struct CastSearch<'a, F> {
-    sweep: Sweep<'a>,
-    placement: Placement,
-    velocity: DVec3,
-    options: CastOptions,
-    /// Only earlier impacts matter.
-    latest: f64,
-    found: Option<Cast>,
-    counts: F,
-}
-
-impl<F: Fn(&Cast) -> bool> CastSearch<'_, F> {
-    fn triangles(&mut self, one: (u32, [Vec3; 3]), two: (u32, [Vec3; 3])) {
-        let Self { placement, velocity, options, latest, .. } = self;
-        let Some(cast) = Cast::of_triangles(placement, one, two, *velocity, options, *latest)
-        else {
-            return;
-        };
-        if self.found.is_some_and(|found| cast.time >= found.time) || !(self.counts)(&cast) {
-            return;
+    // Only earlier impacts matter.
+    let (mut latest, mut first) = (f64::from(max_time), None::<Cast>);
+    let velocity = velocity.as_dvec3();
+    seek(trees, &mut sweep, scratch, |sweep, batch1, batch2| {
+        for lane1 in 0..batch1.count() {
+            for lane2 in 0..batch2.count() {
+                if sweep.limit == FOUND {
+                    return;
+                }
+                let (one, two) = (batch1.triangle(lane1), batch2.triangle(lane2));
+                let cast = Cast::of_triangles(&placement, one, two, velocity, &options, latest);
+                let is_first = |cast: &Cast| first.is_none_or(|first| cast.time < first.time);
+                if let Some(cast) = cast.filter(|cast| is_first(cast) && counts(cast)) {
+                    (first, latest) = (Some(cast), cast.time);
+                    let is_later = cast.time > 0.0;
+                    sweep.limit = if is_later { (cast.time as f32).next_up() } else { FOUND };
+                }
+            }
         }
-        self.found = Some(cast);
-        self.latest = cast.time;
-        self.sweep.limit = if cast.time > 0.0 { (cast.time as f32).next_up() } else { FOUND };
-    }
+    });
+    first
 }
 
 impl CastOptions {
@@ -217,26 +210,56 @@ fn first_impact(
     last.map(|contact| (time, contact))
 }
 
-impl<'a, F: Fn(&Cast) -> bool> BestFirst for CastSearch<'a, F> {
-    type Compare = Sweep<'a>;
+/// Lower bounds of times of impact.
+struct Sweep<'a> {
+    frame: &'a mut PairFrame,
+    /// Velocity of mesh 2 against mesh 1, in frame 1.
+    velocity: Vec3,
+    /// Lower bound of one over the length of the velocity; infinite for no velocity.
+    inverse_speed: f32,
+    /// Upper bound of the distance that counts as an impact.
+    target: f32,
+    /// Later impacts do not matter. Finite, or minus infinity.
+    limit: f32,
+}
+
+impl Sweep<'_> {
+    /// The earliest times, infinite where the nodes pass each other.
+    #[inline(always)]
+    fn times(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
+        let target = f32x4::splat(self.target);
+        let apart = self.frame.signed_gaps(nodes) - target;
+        let mut start = (apart * f32x4::splat(self.inverse_speed)).fast_max(f32x4::ZERO);
+        let mut end = f32x4::splat(f32::INFINITY);
+        let rounding = f32x4::splat(self.frame.rounding[0]);
+        let Along { offset, reach } = self.frame.along1(nodes, rounding);
+        for axis in 0..3 {
+            let speed = self.velocity[axis];
+            let inverse = f32x4::splat(1.0 / speed.abs());
+            let ahead = offset[axis] * f32x4::splat(1.0_f32.copysign(speed));
+            let reach = reach[axis] + target;
+            start = ((-reach - ahead) * inverse).fast_max(start);
+            end = ((reach - ahead) * inverse).fast_min(end);
+        }
+        let start = start * f32x4::splat(1.0 - gamma(8));
+        let passes = (end * f32x4::splat(1.0 + gamma(8))).simd_lt(start);
+        passes.bitselect(f32x4::splat(f32::INFINITY), start)
+    }
+}
+
+impl Compare for Sweep<'_> {
+    type Key = f32;
 
     #[inline(always)]
-    fn compare(&mut self) -> &mut Self::Compare {
-        &mut self.sweep
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
+        let times = self.times(nodes);
+        within(self.limit, times, nodes.lanes)
     }
+}
 
+impl Bounds for Sweep<'_> {
     #[inline(always)]
     fn limit(&self) -> f32 {
-        self.sweep.limit
-    }
-
-    fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
-        for lane1 in 0..batch1.count() {
-            for lane2 in 0..batch2.count() {
-                if self.sweep.limit != FOUND {
-                    self.triangles(batch1.triangle(lane1), batch2.triangle(lane2));
-                }
-            }
-        }
+        self.limit
     }
 }

@@ -30,19 +30,15 @@
 mod advance;
 mod cast;
 mod contacts;
-mod guess;
-mod meet;
 mod nearest;
 mod seek;
-mod sweep;
 mod triangles;
 
 pub use advance::{
     Advance, AdvanceOptions, Bodies, MeshBodies, PartPair, advance, advance_from_contact,
 };
 pub use cast::{Cast, CastOptions, cast};
-pub use contacts::contacts;
-pub use meet::meeting;
+pub use contacts::{contacts, meeting};
 pub use nearest::{deepest, nearest};
-pub use seek::SearchScratch;
+pub use seek::{SearchScratch, best_first};
 pub use triangles::{FoundPair, TrianglePair};

@@ -1,14 +1,17 @@
 //! The nearest or the deepest pair of triangles.
 
 use glamx::{DVec3, Vec3};
+use wide::f32x4;
 
 use crate::contact::contact;
 use crate::leaf::LeafTest;
-use crate::traverse::{PairFrame, Placement, SignedGaps, Toward};
-use crate::tree::{LeafBatch, Tree};
+use crate::simd::{Spread, dot};
+use crate::traverse::{
+    Compare, NodeLanes, PairFrame, Placement, SignedGaps, Toward, expand, leaves_at,
+};
+use crate::tree::{LeafBatch, Slot, Tree};
 
-use super::guess::near_leaves;
-use super::seek::{BestFirst, FOUND, SearchScratch, seek};
+use super::seek::{FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, TrianglePair};
 
 /// The pair of triangles to find.
@@ -76,16 +79,15 @@ pub(super) fn search_except(
     let mut frame = PairFrame::new(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
     // Bounds are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
-    let gaps = SignedGaps { frame: &mut frame, limit: best as f32, toward: None, count: 0 };
-    let (found, count) = (None, 0);
-    let mut search = NearestSearch { gaps, placement, test, goal, excluded, best, found, count };
+    let gaps = &mut SignedGaps { frame: &mut frame, limit: best as f32, toward: None, count: 0 };
+    let mut search = NearestSearch { placement, test, goal, excluded, best, found: None, count: 0 };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
     if best > 0.0 {
-        let (leaf1, leaf2) = near_leaves(trees, search.gaps.frame);
-        search.leaves(leaf1, leaf2);
+        let (leaf1, leaf2) = near_leaves(trees, gaps.frame);
+        search.leaves(gaps, leaf1, leaf2);
     }
-    seek(trees, &mut search, scratch);
-    (search.found, [search.gaps.count, search.count])
+    seek(trees, gaps, scratch, |gaps, leaf1, leaf2| search.leaves(gaps, leaf1, leaf2));
+    (search.found, [gaps.count, search.count])
 }
 
 /// The distance of two vertices: the least is not above it.
@@ -96,7 +98,6 @@ fn some_distance((tree1, tree2): (&Tree, &Tree), placement: &Placement) -> f64 {
 }
 
 struct NearestSearch<'a> {
-    gaps: SignedGaps<'a>,
     placement: Placement,
     test: LeafTest,
     goal: Goal,
@@ -110,8 +111,13 @@ struct NearestSearch<'a> {
 }
 
 impl NearestSearch<'_> {
-    fn triangles(&mut self, one: (u32, [Vec3; 3]), two: (u32, [Vec3; 3])) {
-        if self.gaps.limit == FOUND {
+    fn triangles(
+        &mut self,
+        gaps: &mut SignedGaps<'_>,
+        one: (u32, [Vec3; 3]),
+        two: (u32, [Vec3; 3]),
+    ) {
+        if gaps.limit == FOUND {
             return;
         }
         let indices = [one.0, two.0];
@@ -132,50 +138,72 @@ impl NearestSearch<'_> {
         self.found = Some(FoundPair::new(indices, &pair, contact));
         self.best = contact.distance;
         let is_last = self.goal == Goal::Nearest && contact.distance <= touching;
-        self.gaps.limit = if is_last { FOUND } else { contact.distance as f32 };
-        self.look_along(contact.normal);
+        gaps.limit = if is_last { FOUND } else { contact.distance as f32 };
+        self.look_along(gaps, contact.normal);
     }
 
     /// Looks along the normal of the best pair from now on. Rare, and long: kept out of the way.
     #[inline(never)]
-    fn look_along(&mut self, normal: DVec3) {
+    fn look_along(&self, gaps: &mut SignedGaps<'_>, normal: DVec3) {
         // The normal of crossing triangles tells nothing about other pairs.
-        self.gaps.toward = None;
+        gaps.toward = None;
         if self.best > 0.0 {
-            self.gaps.toward = Toward::new(self.gaps.frame, normal);
+            gaps.toward = Toward::new(gaps.frame, normal);
         }
     }
-}
 
-impl<'a> BestFirst for NearestSearch<'a> {
-    type Compare = SignedGaps<'a>;
-
-    #[inline(always)]
-    fn compare(&mut self) -> &mut Self::Compare {
-        &mut self.gaps
-    }
-
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.gaps.limit
-    }
-
-    fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
-        let toward = self.gaps.toward.as_ref();
-        if toward.is_some_and(|t| t.gap_of_leaves(batch1, batch2) > self.gaps.limit) {
+    fn leaves(&mut self, gaps: &mut SignedGaps<'_>, batch1: &LeafBatch, batch2: &LeafBatch) {
+        let toward = gaps.toward.as_ref();
+        if toward.is_some_and(|t| t.gap_of_leaves(batch1, batch2) > gaps.limit) {
             return;
         }
-        let test = self.test.within(self.gaps.limit);
+        let test = self.test.within(gaps.limit);
         // The axis of far triangles tells nothing about those that touch.
         let is_far = self.best > 0.0;
         let found = |lane1, lane2| {
-            self.triangles(batch1.triangle(lane1), batch2.triangle(lane2));
+            self.triangles(gaps, batch1.triangle(lane1), batch2.triangle(lane2));
         };
         if is_far {
             test.far_survivors(batch1, batch2, found);
         } else {
             test.survivors(batch1, batch2, found);
         }
+    }
+}
+
+/// A pair of leaves that is probably near the answer, down both trees from the roots, always to the children whose
+/// centres are nearest to each other. A search prunes by the best pair of triangles so far, so a good one at the start is worth more
+/// than any later.
+fn near_leaves<'a>(
+    trees: (&'a Tree, &'a Tree),
+    frame: &PairFrame,
+) -> (&'a LeafBatch, &'a LeafBatch) {
+    let mut slots = (Slot::ROOT, Slot::ROOT);
+    loop {
+        if let Some(leaves) = leaves_at(trees, slots) {
+            return leaves;
+        }
+        let mut nearest = f32::INFINITY;
+        let pair = slots;
+        expand(trees, pair, &mut Centres(frame), |children, squared| {
+            // The first one even if all are NaN.
+            if slots == pair || squared < nearest {
+                (slots, nearest) = (children, squared);
+            }
+        });
+    }
+}
+
+/// Compares nodes by the squared distance of their centres.
+struct Centres<'a>(&'a PairFrame);
+
+impl Compare for Centres<'_> {
+    type Key = f32;
+
+    #[inline(always)]
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
+        let offset = self.0.along1(nodes, f32x4::ZERO).offset;
+        (nodes.lanes, dot(offset, offset).to_array())
     }
 }
 

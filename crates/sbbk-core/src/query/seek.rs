@@ -4,80 +4,94 @@
 //! value so far. The pair with the least bound is next. The first leaves reached are near the answer, so the
 //! bound is tight from then on.
 
-use crate::traverse::{Compare, DescentScratch, SlotPair, expand, leaves_at};
+use std::ops::ControlFlow;
+
+use crate::traverse::{
+    Compare, DescentScratch, OrderedOverlap, SignedGaps, SlotPair, expand, leaves_at,
+};
 use crate::tree::{LeafBatch, Slot, Tree};
 
-/// A best-first search with lower bounds.
-pub(super) trait BestFirst {
-    /// Computes lower bounds for pairs of nodes.
-    type Compare: Compare<Key = f32>;
-
-    /// The comparison of nodes.
-    fn compare(&mut self) -> &mut Self::Compare;
-
+/// Lower bounds of pairs of nodes.
+pub(super) trait Bounds: Compare<Key = f32> {
     /// Pairs whose bound is above this cannot matter; [`FOUND`] ends the search.
     fn limit(&self) -> f32;
+}
 
-    /// Compares the triangles of two leaves; may lower the limit.
-    fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch);
+impl Bounds for SignedGaps<'_> {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+}
+
+impl Bounds for OrderedOverlap<'_> {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
 }
 
 /// Memory of a query, kept by the caller: after the first few nothing is allocated.
 #[derive(Clone, Debug, Default)]
 pub struct SearchScratch {
-    stack: Vec<BoundedPair>,
+    stack: Vec<(f32, SlotPair)>,
     pub(super) descent: DescentScratch,
-}
-
-/// A pair of nodes and its bound.
-#[derive(Copy, Clone, Debug)]
-struct BoundedPair {
-    key: f32,
-    slots: SlotPair,
 }
 
 /// The limit that ends a search.
 pub(super) const FOUND: f32 = f32::NEG_INFINITY;
 
-/// Goes through all pairs of leaves that may matter.
-pub(super) fn seek<B: BestFirst>(
+/// Goes through all pairs of leaves that may matter. `leaves` may lower the limit.
+pub(super) fn seek<B: Bounds>(
     trees: (&Tree, &Tree),
     bounds: &mut B,
     scratch: &mut SearchScratch,
+    mut leaves: impl FnMut(&mut B, &LeafBatch, &LeafBatch),
 ) {
-    let stack = &mut scratch.stack;
-    stack.clear();
-    stack.push(BoundedPair { key: f32::NEG_INFINITY, slots: (Slot::ROOT, Slot::ROOT) });
-    while let Some(BoundedPair { key, slots }) = stack.pop() {
+    let roots = (f32::NEG_INFINITY, (Slot::ROOT, Slot::ROOT));
+    best_first(&mut scratch.stack, roots, |key, slots, stack| {
         if bounds.limit() == FOUND {
-            return;
+            return ControlFlow::Break(());
         }
         // A bound that is NaN prunes nothing.
         if key > bounds.limit() {
-            continue;
+            return ControlFlow::Continue(());
         }
         if let Some((leaf1, leaf2)) = leaves_at(trees, slots) {
-            bounds.leaves(leaf1, leaf2);
-            continue;
+            leaves(bounds, leaf1, leaf2);
+        } else {
+            expand(trees, slots, bounds, |slots, key| stack.push((key, slots)));
         }
-        let first = stack.len();
-        expand(trees, slots, bounds.compare(), |slots, key| {
-            stack.push(BoundedPair { key, slots });
-        });
-        nearest_last(&mut stack[first..]);
-    }
+        ControlFlow::Continue(())
+    });
 }
 
-/// Sorts up to four pairs, so that the one with the least bound is popped first; equal ones in the
-/// order they have.
+/// Opens pairs of nodes of any two hierarchies, depth first. Of the pairs that a call of `open` adds, the one with the
+/// least bound is next, and the last one of equal bounds.
+///
+/// `open` gets the bound of a pair and the pair. It compares two leaves, or adds the pairs below two nodes with their
+/// bounds. The search ends when it breaks.
 #[inline(always)]
-fn nearest_last(pairs: &mut [BoundedPair]) {
-    for end in 1..pairs.len() {
-        for i in (0..end).rev() {
-            if pairs[i].key < pairs[i + 1].key {
-                pairs.swap(i, i + 1);
-            } else {
-                break;
+pub fn best_first<B: Copy + PartialOrd, P: Copy>(
+    stack: &mut Vec<(B, P)>,
+    roots: (B, P),
+    mut open: impl FnMut(B, P, &mut Vec<(B, P)>) -> ControlFlow<()>,
+) {
+    stack.clear();
+    stack.push(roots);
+    while let Some((bound, pair)) = stack.pop() {
+        let first = stack.len();
+        if open(bound, pair, stack).is_break() {
+            return;
+        }
+        let added = &mut stack[first..];
+        for end in 1..added.len() {
+            for i in (0..end).rev() {
+                if added[i].0 < added[i + 1].0 {
+                    added.swap(i, i + 1);
+                } else {
+                    break;
+                }
             }
         }
     }

@@ -221,7 +221,8 @@ fn nodes_the_margin_apart_meet() {
             let kdops = nodes.kdops.unwrap();
             let meeting = frame.correspondence().kdops_meet(&kdops, 0b1111);
             assert!(meeting >> lane & 1 != 0, "{gap}");
-            let (meeting, _) = OrderedOverlap(&mut frame).compare(&nodes);
+            let mut overlap = OrderedOverlap { frame: &mut frame, limit: f32::INFINITY };
+            let (meeting, _) = overlap.compare(&nodes);
             assert!(meeting >> lane & 1 != 0, "{gap}");
         }
     }

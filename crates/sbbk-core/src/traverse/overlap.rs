@@ -49,14 +49,18 @@ impl<C: Counters> Compare for Overlap<'_, C> {
 
 /// Keeps pairs of nodes whose volumes come within the margin. The key is minus the least overlap of
 /// the boxes along their face axes.
-pub(crate) struct OrderedOverlap<'a>(pub(crate) &'a mut PairFrame);
+pub(crate) struct OrderedOverlap<'a> {
+    pub(crate) frame: &'a mut PairFrame,
+    /// Larger keys do not matter to a search.
+    pub(crate) limit: f32,
+}
 
 impl Compare for OrderedOverlap<'_> {
     type Key = f32;
 
     #[inline(always)]
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
-        let frame = &mut *self.0;
+        let frame = &mut *self.frame;
         // A gap that overflowed to NaN is kept.
         let meeting = |gap: f32x4| nodes.lanes & !gap.simd_gt(f32x4::ZERO).to_bitmask();
         let in_frame1 = frame.along1(nodes, frame.slack[0]);
