@@ -6,8 +6,7 @@
 //! child. No descent of real trees has such a pair, so this test uses the figure's tree and states
 //! which nodes meet. The front is the real one.
 
-use super::Front;
-use super::pair_test::PairTest;
+use super::{Front, PairTest};
 use crate::simd::bits;
 use crate::traverse::{Opening, Sides, SlotPair};
 use crate::tree::Slot;

@@ -41,12 +41,10 @@
 
 #[cfg(test)]
 mod figure;
-mod pair_test;
 
 use crate::simd::bits;
-use crate::traverse::{Counters, Opening, PairFrame};
-use crate::tree::{LeafBatch, Tree};
-use pair_test::{PairTest, TreePair};
+use crate::traverse::{Counters, Opening, Overlap, PairFrame, Sides, SlotPair, leaves_at};
+use crate::tree::{LeafBatch, Slot, Tree};
 
 /// The pairs of nodes where the last descent of two trees stopped: see [the module](self).
 ///
@@ -154,5 +152,57 @@ impl Front {
         }
         self.cells.push(cell);
         self.cells.len() as u32 - 1
+    }
+}
+
+/// Two trees at a pose, or a stand-in for them in a test.
+trait PairTest {
+    /// The pair of roots, as the only lane, and the mask of lanes that hold a pair of leaves.
+    fn roots(&self) -> (Opening, u32);
+    /// The pairs below a pair that is not a pair of leaves, and the mask of pairs of leaves.
+    fn open(&self, pair: SlotPair) -> (Opening, u32);
+    /// Counts and visits a pair of leaves.
+    fn visit(&mut self, pair: SlotPair);
+    /// The lanes of `lanes` whose pairs come within the margin.
+    fn meeting(&mut self, opening: &Opening, lanes: u32) -> u32;
+}
+
+/// Two trees at a pose.
+struct TreePair<'a, C, V> {
+    trees: (&'a Tree, &'a Tree),
+    frame: &'a mut PairFrame,
+    counters: C,
+    visit: V,
+}
+
+impl<C, V> TreePair<'_, C, V> {
+    fn leaves(&self, opening: &Opening) -> u32 {
+        let is_pair = |lane: &usize| leaves_at(self.trees, opening.pair(*lane)).is_some();
+        bits(opening.lanes).filter(is_pair).fold(0, |leaves, lane| leaves | 1 << lane)
+    }
+}
+
+impl<C: Counters, V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, C, V> {
+    fn roots(&self) -> (Opening, u32) {
+        let nodes = (Slot::ROOT.node(), Slot::ROOT.node());
+        let opening = Opening { nodes, sides: Sides::Both, same_lane: 0, lanes: 0b0001 };
+        (opening, self.leaves(&opening))
+    }
+
+    fn open(&self, pair: SlotPair) -> (Opening, u32) {
+        let opening = Opening::of(self.trees, pair);
+        (opening, self.leaves(&opening))
+    }
+
+    fn visit(&mut self, pair: SlotPair) {
+        self.counters.count(|counts| counts.leaf_pairs += 1);
+        if let Some((leaf1, leaf2)) = leaves_at(self.trees, pair) {
+            (self.visit)(leaf1, leaf2);
+        }
+    }
+
+    fn meeting(&mut self, opening: &Opening, lanes: u32) -> u32 {
+        let mut overlap = Overlap { frame: &mut *self.frame, counters: &mut self.counters };
+        opening.compare(self.trees, lanes, &mut overlap).0
     }
 }

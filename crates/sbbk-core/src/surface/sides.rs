@@ -13,9 +13,8 @@ use std::ops::ControlFlow;
 
 use glamx::DVec3;
 
-use super::meeting::{depth_within, meeting};
 use super::slopes::PlaceMemo;
-use super::triangle::{area_vector, longest_side};
+use super::triangle::{area_vector, depth_within, longest_side, meeting};
 use super::twins::TriangleSet;
 
 /// Triangles that rays can meet.

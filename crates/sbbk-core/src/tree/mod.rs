@@ -27,20 +27,18 @@ mod build;
 mod layers;
 mod node;
 mod pack;
-mod walk;
 
 pub use build::BuildOptions;
 pub use layers::LayerPlan;
 use node::Link;
 pub use node::{BATCH, LeafBatch};
 pub(crate) use node::{Children, Intervals, Slot};
-pub use walk::Node;
 
 use glamx::Vec3;
 use thiserror::Error;
 
 use crate::volumes::rounding::gamma;
-use crate::volumes::{SLABS, Sphere};
+use crate::volumes::{Aabb, Kdop, SLABS, Sphere};
 use node::Pair;
 
 /// A bounding volume hierarchy of the triangles of a mesh.
@@ -129,6 +127,11 @@ impl Tree {
         Ok(pack::pack(build::build(vertices, triangles, options), vertices, triangles, options))
     }
 
+    /// The root, from which all nodes can be reached.
+    pub fn root(&self) -> Node<'_> {
+        Node { tree: self, slot: Slot::ROOT, depth: 0 }
+    }
+
     /// Number of triangles of the mesh, degenerate ones included.
     pub fn triangle_count(&self) -> u32 {
         self.triangle_count
@@ -184,6 +187,52 @@ impl Tree {
     #[inline]
     pub(crate) fn link(&self, slot: Slot) -> Link {
         self.children(slot.node()).links[slot.lane()]
+    }
+}
+
+/// A node of a tree: see [`Tree::root`].
+#[derive(Copy, Clone, Debug)]
+pub struct Node<'a> {
+    tree: &'a Tree,
+    slot: Slot,
+    depth: u32,
+}
+
+impl<'a> Node<'a> {
+    /// Steps from the root.
+    pub fn depth(&self) -> u32 {
+        self.depth
+    }
+
+    /// The box of the node, in the frame of the mesh.
+    pub fn aabb(&self) -> Aabb {
+        self.tree.children(self.slot.node()).aabb(self.slot.lane())
+    }
+
+    /// The k-DOP of the node, in the layers that have one.
+    pub fn kdop(&self) -> Option<Kdop> {
+        self.tree.children(self.slot.node()).kdop(self.slot.lane())
+    }
+
+    /// The two nodes below; `None` for a leaf.
+    pub fn children(&self) -> Option<[Self; 2]> {
+        let link = self.link();
+        let child = |lane| Self {
+            tree: self.tree,
+            slot: Slot::new(link.index(), lane),
+            depth: self.depth + 1,
+        };
+        (!link.is_leaf()).then(|| [child(0), child(1)])
+    }
+
+    /// The triangles of a leaf; `None` for an inner node.
+    pub fn leaf(&self) -> Option<&'a LeafBatch> {
+        let link = self.link();
+        link.is_leaf().then(|| self.tree.leaf(link.index()))
+    }
+
+    fn link(&self) -> Link {
+        self.tree.link(self.slot)
     }
 }
 

@@ -6,10 +6,9 @@
 //! any direction separates the bodies. If both distances agree, the move is the least one. Rounding
 //! of thin faces can end the growth early, but every move separates the bodies.
 
-use super::difference::{Difference, Vertex};
 use super::polytope::{Face, Polytope};
 use super::simplex::{Simplex, thin_normal};
-use super::support::SupportMap;
+use super::support::{Difference, SupportMap, Vertex};
 use glamx::DVec3;
 
 /// Share of the depth that may be left open, for polytopes and for curved shapes.

@@ -1,9 +1,9 @@
 //! The faces of a convex hull, proved to be those.
 
-use super::difference::Vertex;
 use super::lanes::PointLanes;
 use super::polytope::{Face, Polytope};
 use super::simplex::thin_normal;
+use super::support::Vertex;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 

@@ -47,10 +47,8 @@ mod clip;
 mod cuboid;
 mod curved;
 mod depth;
-mod difference;
 mod faces;
 mod feature;
-mod half_space;
 mod hull;
 mod hull_surface;
 mod lanes;
@@ -65,7 +63,6 @@ pub use clip::{FeaturePoint, FeaturePoints, clip_feature};
 pub use cuboid::CuboidSupport;
 pub use curved::{ConeSupport, CylinderSupport, TurnedSupport};
 pub use feature::feature_at;
-pub use half_space::half_space_contact;
 pub use hull::HullPoints;
 pub use segment::{PointSupport, SegmentSupport};
 pub use support::{SupportMap, TriangleSupport};
@@ -136,6 +133,25 @@ pub fn round_contact<S: SupportMap>(
         find(triangle, core, margin + radius)?;
     let contact = ConvexContact::new(on_triangle, normal, distance - radius);
     (contact.distance <= margin).then_some(contact)
+}
+
+/// Returns the contact of a triangle with the half-space below the plane through the origin with
+/// this unit normal, at the lowest corner. `None` beyond the margin, or if a number is not finite.
+pub fn half_space_contact(
+    triangle: &[DVec3; 3],
+    normal: DVec3,
+    margin: f64,
+) -> Option<ConvexContact> {
+    let [mut lowest, b, c] = triangle.map(|corner| (corner.dot(normal), corner));
+    let sum = lowest.0 + b.0 + c.0;
+    for other in [b, c] {
+        if other.0 < lowest.0 {
+            lowest = other;
+        }
+    }
+    let (distance, on_triangle) = lowest;
+    let contact = ConvexContact::new(on_triangle, -normal, distance);
+    (sum.is_finite() && contact.is_finite() && distance <= margin).then_some(contact)
 }
 
 /// Returns true if a triangle and a convex shape cross or are at most `reach` apart. Faster than

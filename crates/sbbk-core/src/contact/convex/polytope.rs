@@ -1,7 +1,7 @@
 //! A polytope of points of the difference that grows around the origin.
 
-use super::difference::Vertex;
 use super::simplex::{self, thin_normal};
+use super::support::Vertex;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 

@@ -6,9 +6,8 @@
 //! than its support point. If both agree, the distance is proved; if the support point is beyond
 //! the margin, so is the shape.
 
-use super::difference::{Difference, Vertex};
 use super::simplex::{self, Simplex, Step};
-use super::support::SupportMap;
+use super::support::{Difference, SupportMap, Vertex};
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 

@@ -1,9 +1,8 @@
 //! A triangle and a point or a segment, in closed form: the cores of balls and capsules.
 
-use super::difference::Difference;
 use super::search::{BOUNDARY, is_proved};
 use super::simplex::{self, Simplex, thin_normal};
-use super::support::SupportMap;
+use super::support::{Difference, SupportMap};
 use super::{ConvexContact, DOUBTFUL, by_search};
 use crate::contact::closest::{closest_on_lines, within_edge};
 use crate::contact::triangle::NEAR_PARALLEL;

@@ -5,7 +5,7 @@
 //! distance queries between convex objects", 2017. If rounding may have chosen a sign, all faces or
 //! edges are tried and the nearest one counts, so a flat simplex is no special case.
 
-use super::difference::Vertex;
+use super::support::Vertex;
 use glamx::DVec3;
 
 /// Least width of a face, as a share of its length, at which its normal and areas need no care.

@@ -1,4 +1,4 @@
-//! Support maps: all that a search needs to know of a convex shape.
+//! Support maps: all that a search needs to know of a convex shape, and of its Minkowski difference with a triangle.
 
 use super::{ConvexContact, by_search};
 use crate::contact::contact as triangle_contact;
@@ -77,4 +77,33 @@ pub(super) fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> usize {
     let [b, c] = [(*b - *a).dot(direction), (*c - *a).dot(direction)];
     let (i, least) = if b < 0.0 { (1, b) } else { (0, 0.0) };
     if c < least { 2 } else { i }
+}
+
+/// The Minkowski difference of a convex shape and a triangle: the points `s - t` of points `s` of the shape and `t` of the triangle. The bodies cross where it
+/// holds the origin; else its point nearest to the origin leads from one to the other.
+pub(super) struct Difference<'a, S> {
+    pub triangle: &'a [DVec3; 3],
+    pub shape: &'a S,
+}
+
+/// A point of the difference, and the corner of the triangle that it starts from.
+#[derive(Clone, Copy)]
+pub(super) struct Vertex {
+    pub point: DVec3,
+    pub corner: usize,
+}
+
+impl<S: SupportMap> Difference<'_, S> {
+    /// The farthest point along a direction.
+    #[inline(always)]
+    pub fn farthest(&self, direction: DVec3) -> Vertex {
+        let corner = lowest(self.triangle, direction);
+        Vertex { point: self.shape.support(direction) - self.triangle[corner], corner }
+    }
+
+    /// The three vertices that end in one point of the shape.
+    #[inline(always)]
+    pub fn at(&self, point: DVec3) -> [Vertex; 3] {
+        [0, 1, 2].map(|corner| Vertex { point: point - self.triangle[corner], corner })
+    }
 }
