@@ -4,7 +4,6 @@
 //! needs nothing else.
 
 use std::cell::Cell;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;
@@ -297,18 +296,10 @@ impl<'a> MeshView<'a> {
         Sphere { centre, radius: half + gamma(8) * (centre.length() + half) }
     }
 
-    /// Calls `visit` with the triangles for whose boxes, and the boxes above them, `overlaps` returns
-    /// true, until `visit` breaks.
+    /// Returns the triangles for whose boxes, and the boxes above them, `overlaps` returns true.
     #[inline(always)]
-    pub(crate) fn near(
-        &self,
-        overlaps: impl Fn(TestedBox) -> bool,
-        mut visit: impl FnMut(u32) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        for triangle in self.mesh.bvh().leaves(|node| overlaps(box_of(node))) {
-            visit(triangle)?;
-        }
-        ControlFlow::Continue(())
+    pub(crate) fn near(&self, overlaps: impl Fn(TestedBox) -> bool) -> impl Iterator<Item = u32> {
+        self.mesh.bvh().leaves(move |node| overlaps(box_of(node)))
     }
 
     /// The box around some triangles.

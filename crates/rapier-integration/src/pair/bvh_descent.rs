@@ -71,10 +71,7 @@ impl<'a> BvhDescent<'a> {
             tested.set(tested.get() + 1);
             whole.meets(node)
         };
-        let _ = mesh1.near(meets, |triangle| {
-            near.push(triangle);
-            ControlFlow::Continue(())
-        });
+        near.extend(mesh1.near(meets));
         counters.aabb_tests(tested.get());
     }
 
@@ -103,9 +100,7 @@ impl<'a> BvhDescent<'a> {
         };
         let is_near = |many: &&[u32]| {
             let group = in_frame2.of(mesh1.tested(many));
-            let is_first_enough = |_| ControlFlow::Break(());
-            many.len() < LEAST_GROUP
-                || mesh2.near(|node| meets(&group, node), is_first_enough).is_break()
+            many.len() < LEAST_GROUP || mesh2.near(|node| meets(&group, node)).next().is_some()
         };
         let mut fours = near.chunks(GROUP).filter(is_near).flat_map(|many| many.chunks(BATCH));
         let flow = fours.try_for_each(|triangles| {
@@ -145,15 +140,13 @@ impl<'a> BvhDescent<'a> {
             flow
         };
         let mut waiting = ArrayVec::<u32, BATCH>::new();
-        mesh2.near(meets, |triangle2| {
+        for triangle2 in mesh2.near(meets) {
             waiting.push(triangle2);
-            if !waiting.is_full() {
-                return ControlFlow::Continue(());
+            if waiting.is_full() {
+                decide(&waiting)?;
+                waiting.clear();
             }
-            decide(&waiting)?;
-            waiting.clear();
-            ControlFlow::Continue(())
-        })?;
+        }
         if waiting.is_empty() { ControlFlow::Continue(()) } else { decide(&waiting) }
     }
 }

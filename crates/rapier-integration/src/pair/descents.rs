@@ -154,13 +154,7 @@ impl TriangleShapes<'_> {
         let frame = FieldFrame::new(&field, placement, margin);
         let leaves = FieldLeaves::new(&frame, ball.centre, mesh.magnitude());
         near.clear();
-        let _ = mesh.near(
-            |node| frame.meets(node, ()),
-            |triangle| {
-                near.push(triangle);
-                ControlFlow::Continue(())
-            },
-        );
+        near.extend(mesh.near(|node| frame.meets(node, ())));
         for triangles in near.chunks(BATCH) {
             let batch = LeafBatch::gather(triangles, |triangle| mesh.corners(triangle));
             leaves.visit(&batch, &mut *counts, |triangle, of_mesh| {

@@ -4,13 +4,16 @@
 //! Fine meshes only have contacts from their tips to the nearest points of the other shape. Walks add the places
 //! where shapes are nearest to each other. A walk goes from a point of one shape to the nearest point of the other,
 //! and back. It may end at another place. Shapes of few triangles that nearly touch keep all contacts in the
-//! [`Directions`] of local minima. Others keep the local minima
+//! directions of local minima. Others keep the local minima
 //! of the larger shape; without any, they keep all contacts.
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
-use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
+use sbbk_core::contact::{Feature, FeaturePair, ManifoldPoints, TriangleContact, contact};
 
+use super::islands::OverlapIslands;
+use super::query::ContactList;
+use super::surface::{SurfaceFilter, Verdict};
 use super::triangle_contacts::in_local;
 use super::triangle_shapes::{TriangleHit, TriangleShapes, TriangleSurfaceContact};
 
@@ -25,46 +28,90 @@ const SAME_DIRECTION: f64 = 0.97;
 /// Least cosine of directions that are one. Higher: more time.
 const ONE_DIRECTION: f64 = 0.99;
 
-/// Normals of contacts.
-#[derive(Default)]
-pub(super) struct Directions(Vec<DVec3>);
-
-impl Directions {
-    pub(super) fn clear(&mut self) {
-        self.0.clear();
-    }
-
-    /// Adds a normal that is wanted, unless there is one like it. There is room for some hundreds.
-    pub(super) fn add_if(&mut self, normal: DVec3, is_wanted: impl FnOnce() -> bool) {
-        if !self.has_within(normal, ONE_DIRECTION) && is_wanted() {
-            self.0.push(normal);
+impl TriangleShapes<'_> {
+    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way`: contacts at borders get
+    /// the normals of the faces. `clipped` is memory.
+    pub(super) fn add_far(
+        &self,
+        is_apart: bool,
+        lead_one_way: bool,
+        clipped: &mut ManifoldPoints,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        let (old_count, reach) = (contacts.len(), f64::from(self.reach()));
+        // The nearest contact counts, even if it may pass by.
+        let may_pass = old_count > 0;
+        self.find_far(is_apart, |(pair, TriangleSurfaceContact { contact, .. })| {
+            if contact.distance <= reach {
+                return;
+            }
+            let verdict = self.with_filter(pair, may_pass, |filter| filter.apply(contact, clipped));
+            if let Some(Verdict::Contact(mut hit, upright)) = verdict {
+                hit.contact = upright.filter(|_| lead_one_way).unwrap_or(hit.contact);
+                contacts.push((pair, hit));
+            }
+        });
+        if contacts.len() > old_count {
+            contacts.sort_by(|(pair1, hit1), (pair2, hit2)| {
+                let by_distance = hit1.contact.distance.total_cmp(&hit2.contact.distance);
+                pair1.cmp(pair2).then(by_distance)
+            });
+            contacts.dedup_by_key(|(pair, _)| *pair);
         }
     }
 
-    /// Returns true if a far contact with this normal counts.
-    pub(super) fn has(&self, normal: DVec3) -> bool {
-        self.has_within(normal, SAME_DIRECTION)
-    }
-
-    fn has_within(&self, normal: DVec3, cosine: f64) -> bool {
-        self.0.iter().any(|direction| direction.dot(normal) >= cosine)
-    }
-}
-
-/// Two shapes whose far contacts are wanted.
-pub(super) struct FarSearch<'a>(pub(super) &'a TriangleShapes<'a>);
-
-impl FarSearch<'_> {
-    /// Calls `found` with the contacts of tips, and with those one step of a walk farther, which may be near.
-    /// Shapes that are apart also get the contacts where walks from the nearest tips and from the middles end.
-    pub(super) fn contacts(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
-        if !self.0.pose.placement12.is_finite() {
+    /// Removes contacts beyond the filter distance, except those in the direction of a near contact or of a local
+    /// minimum of the distance. Shapes that cross also lose contacts that lead into solids: those would hold them in each
+    /// other. If no contact is near, the smaller shape may turn before it meets the larger one, or rests on a contact
+    /// skin. Only local minima of the larger one stay then; without any, all contacts stay. `directions` is memory.
+    pub(super) fn reject_aside(
+        &self,
+        directions: &mut Vec<DVec3>,
+        islands: &OverlapIslands,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        let limit = self.filter_distance;
+        let is_near = |contact: &TriangleContact| contact.distance <= limit;
+        if !contacts.iter().any(|(_, hit)| is_near(&hit.contact)) {
+            let is_minimum = |(pair, hit): &TriangleHit| {
+                let is_minimum =
+                    |filter: &SurfaceFilter<'_>| filter.is_minimum_of_larger(&hit.contact);
+                self.with_filter(*pair, true, is_minimum) == Some(true)
+            };
+            if contacts.iter().any(is_minimum) {
+                contacts.retain(is_minimum);
+            }
             return;
         }
-        let within = self.0.pose.prediction;
+        directions.clear();
+        for (pair, TriangleSurfaceContact { contact, .. }) in &*contacts {
+            let is_minimum = |filter: &SurfaceFilter<'_>| filter.is_local_minimum(contact);
+            let counts =
+                || is_near(contact) || self.with_filter(*pair, true, is_minimum) == Some(true);
+            // There is room for some hundreds.
+            if !has_like(directions, contact.normal, ONE_DIRECTION) && counts() {
+                directions.push(contact.normal);
+            }
+        }
+        let is_overlap = !islands.crossings.is_empty();
+        contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
+            let leads_inside = |filter: &SurfaceFilter<'_>| filter.leads_inside(contact);
+            is_near(contact)
+                || has_like(directions, contact.normal, SAME_DIRECTION)
+                    && !(is_overlap && self.with_filter(*pair, true, leads_inside) == Some(true))
+        });
+    }
+
+    /// Calls `found` with the contacts of tips, and with those one step of a walk farther, which may be near.
+    /// Shapes that are apart also get the contacts where walks from the nearest tips and from the middles end.
+    fn find_far(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
+        if !self.pose.placement12.is_finite() {
+            return;
+        }
+        let within = self.pose.prediction;
         for i in 0..2 {
             let mut nearest: Option<TriangleHit> = None;
-            for (half_edge, tip) in self.0[i].tips() {
+            for (half_edge, tip) in self[i].tips() {
                 let Some(hit) = self.of_point(i, half_edge, tip, within) else { continue };
                 found(hit);
                 self.step(1 - i, &hit, distance(&hit)).into_iter().for_each(&mut found);
@@ -73,7 +120,7 @@ impl FarSearch<'_> {
                 }
             }
             if is_apart {
-                let middle = self.0[i].bounds().center();
+                let middle = self[i].bounds().center();
                 let of_middle = self.of_point(i, 0, middle, Real::MAX);
                 let from_middle = of_middle.and_then(|hit| self.step(1 - i, &hit, f64::INFINITY));
                 let starts = [nearest.map(|hit| (1 - i, hit)), from_middle.map(|hit| (i, hit))];
@@ -97,15 +144,15 @@ impl FarSearch<'_> {
     /// Returns the contact after a step from the point of shape `i`: the triangle of the other shape becomes
     /// the nearest one. `None` beyond a limit.
     fn step(&self, i: usize, (pair, known): &TriangleHit, limit: f64) -> Option<TriangleHit> {
-        let placement = &self.0.pose.placement12;
-        let [origin, ..] = self.0[0].corners(pair[0])?;
+        let placement = &self.pose.placement12;
+        let [origin, ..] = self[0].corners(pair[0])?;
         let point = match i {
             0 => placement.to_frame2(known.contact.point1, origin),
             _ => known.contact.point2 + origin.as_dvec3(),
         };
         let mut pair = *pair;
-        pair[1 - i] = self.0[1 - i].nearest_triangle(point.as_vec3(), limit as Real)?;
-        let local = self.0.local(pair)?;
+        pair[1 - i] = self[1 - i].nearest_triangle(point.as_vec3(), limit as Real)?;
+        let local = self.local(pair)?;
         let [t1, t2] = &local.corners;
         Some((pair, TriangleSurfaceContact::of_triangles(contact(t1, t2, limit)?)))
     }
@@ -113,11 +160,11 @@ impl FarSearch<'_> {
     /// Returns the contact of a point and the nearest triangle of the other shape. The point is in the frame of
     /// shape `i`, and stands for the start of a half-edge.
     fn of_point(&self, i: usize, half_edge: u32, point: Vec3, within: Real) -> Option<TriangleHit> {
-        let placement = &self.0.pose.placement12;
-        let in_other = self.0.pose.in_other(i, point);
-        let mut pair = [self.0[1 - i].nearest_triangle(in_other, within)?; 2];
+        let placement = &self.pose.placement12;
+        let in_other = self.pose.in_other(i, point);
+        let mut pair = [self[1 - i].nearest_triangle(in_other, within)?; 2];
         pair[i] = half_edge / 3;
-        let mut local = self.0.local(pair)?;
+        let mut local = self.local(pair)?;
         local.corners[i] = [in_local(placement, i, point, local.origin); 3];
         let [t1, t2] = &local.corners;
         let contact = contact(t1, t2, f64::from(within))?;
@@ -127,6 +174,11 @@ impl FarSearch<'_> {
         let contact = TriangleContact { features, ..contact };
         Some((pair, TriangleSurfaceContact::of_triangles(contact)))
     }
+}
+
+/// Returns true if one of some directions is within an angle of a normal.
+fn has_like(directions: &[DVec3], normal: DVec3, cosine: f64) -> bool {
+    directions.iter().any(|direction| direction.dot(normal) >= cosine)
 }
 
 fn distance((_, hit): &TriangleHit) -> f64 {

@@ -7,10 +7,11 @@ use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
 use super::pose::PairPose;
-use super::ranges::{filter_distance, filter_unit};
 use super::triangle_contacts::in_local;
 use super::triangle_shape::{MeshShape, TriangleShape};
-use super::triangle_shapes::{TriangleHit, TriangleShapes, TriangleSurfaceContact};
+use super::triangle_shapes::{
+    TriangleHit, TriangleShapes, TriangleSurfaceContact, filter_distance, filter_unit,
+};
 use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
 
 /// Part of a body that may stick out of a room that holds it, in half heights of the body. Higher:

@@ -16,7 +16,6 @@ mod mesh_pair;
 mod passed;
 mod pose;
 mod query;
-mod ranges;
 mod reduce;
 mod state;
 mod surface;

@@ -20,10 +20,11 @@ use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
-use super::ranges::{DISTANT, NEAR_NORMAL};
 use super::triangle_contacts::in_local;
 use super::triangle_shape::ShapeFacets;
-use super::triangle_shapes::{ContactSource, TriangleShapes, TriangleSurfaceContact};
+use super::triangle_shapes::{
+    ContactSource, DISTANT, NEAR_NORMAL, TriangleShapes, TriangleSurfaceContact,
+};
 use crate::mesh::BEHIND;
 
 /// Greatest depth of a contact of the first pass, in least translations of its triangles or, if
@@ -40,7 +41,7 @@ const LEAN: f64 = 0.33;
 /// in vain; lower: slanted contacts keep their normals.
 const UPRIGHT: f64 = 0.999_999;
 
-/// Depth up to which a shape counts as above the plane of a border triangle, in [`filter_unit`](super::ranges::filter_unit)s.
+/// Depth up to which a shape counts as above the plane of a border triangle, in [`filter_unit`](super::triangle_shapes::filter_unit)s.
 /// Higher: rims do not carry what overhangs them. Lower: bodies stumble where meshes meet.
 pub(super) const LIP: f64 = 0.1;
 
@@ -65,6 +66,19 @@ pub(super) enum Verdict {
     Contact(TriangleSurfaceContact, Option<TriangleContact>),
     /// The surfaces cross. A contact may still be rejected by the second pass.
     Crossing(Crossing, Option<TriangleSurfaceContact>),
+}
+
+impl TriangleShapes<'_> {
+    /// Calls `then` with the filter of two triangles, if these exist. `may_pass`: their edges and vertices may pass each other.
+    pub(super) fn with_filter<T>(
+        &self,
+        pair: [u32; 2],
+        may_pass: bool,
+        then: impl FnOnce(&SurfaceFilter<'_>) -> T,
+    ) -> Option<T> {
+        let local = self.local(pair)?;
+        Some(then(&SurfaceFilter::new(self, pair, &local, may_pass)))
+    }
 }
 
 /// Two triangles and the surfaces around them. Turns contacts of the triangles into contacts of the surfaces.

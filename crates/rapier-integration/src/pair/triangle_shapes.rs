@@ -4,7 +4,8 @@ use std::ops::Index;
 use std::sync::OnceLock;
 
 use glamx::DVec3;
-use parry3d::math::Real;
+use parry3d::math::{Pose, Real};
+use parry3d::partitioning::BvhNode;
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::TrianglePseudoNormals;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
@@ -15,8 +16,37 @@ use sbbk_core::tree::Tree;
 
 use super::pose::PairPose;
 use super::query::Moving;
-use super::ranges::{DISTANT, NEAR_NORMAL, filter_unit, reach};
-use super::triangle_shape::{MeshShape, TriangleShape};
+use super::reduce::FILTERED;
+use super::triangle_shape::{FieldShape, MeshShape, TriangleShape};
+use crate::mesh::MeshView;
+
+/// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body of one length unit has a
+/// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
+/// lower: bodies come deeper into others before they meet.
+const REACH: f64 = 0.4;
+
+/// Greatest product of the numbers of triangles near the other shape with which all pairs are candidates.
+/// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
+const MOST_PAIRS: usize = 1 << 14;
+
+/// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
+/// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
+/// with less warning.
+pub(super) const DISTANT: f64 = 0.25;
+
+/// Least cosine between the normal of a [`DISTANT`] contact and both triangle normals. Higher:
+/// smooth bodies lose contacts; lower: gears are braked.
+pub(super) const NEAR_NORMAL: f64 = 0.87;
+
+/// Returns the distance up to which contacts must be local minima, from the radius of the smaller shape.
+pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
+    if has_surface { f64::from(FILTERED * radius) } else { f64::INFINITY }
+}
+
+/// Returns the unit of the filter: the prediction distance, or less for small shapes.
+pub(super) fn filter_unit(pose: &PairPose, filter_distance: f64) -> f64 {
+    f64::from(pose.prediction).min(filter_distance)
+}
 
 /// Normal cones of both triangles.
 pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
@@ -87,7 +117,34 @@ impl TriangleShapes<'_> {
     /// Returns the distance up to which all pairs of triangles are candidates. Farther contacts are
     /// [far](super::far).
     pub(super) fn reach(&self) -> Real {
-        *self.reach.get_or_init(|| reach(&self.shapes, self.pose, self.filter_distance))
+        *self.reach.get_or_init(|| {
+            let most = (REACH * self.filter_distance) as Real;
+            // A prediction distance that is NaN finds nothing.
+            let is_less = most < self.pose.prediction && !self.are_few();
+            if is_less { most } else { self.pose.prediction }
+        })
+    }
+
+    /// Returns true if few pairs of triangles may be within the prediction distance.
+    fn are_few(&self) -> bool {
+        let PairPose { pos12, prediction, .. } = *self.pose;
+        let poses = [pos12, pos12.inverse()];
+        let are_few_of_field = |field: &FieldShape<'_>, mesh: &MeshShape<'_>, pose: &Pose| {
+            let under = field.field.count_under(&mesh.view.placed_root(pose, prediction));
+            mesh.view.mesh.indices().len() as f64 * under <= MOST_PAIRS as f64
+        };
+        match &self.shapes {
+            [TriangleShape::Mesh(one), TriangleShape::Mesh(two)] => {
+                are_few_of_meshes([one.view, two.view], poses, prediction)
+            }
+            [TriangleShape::Field(field), TriangleShape::Mesh(mesh)] => {
+                are_few_of_field(field, mesh, &poses[0])
+            }
+            [TriangleShape::Mesh(mesh), TriangleShape::Field(field)] => {
+                are_few_of_field(field, mesh, &poses[1])
+            }
+            [TriangleShape::Field(_), TriangleShape::Field(_)] => true,
+        }
     }
 
     /// Returns a test for triangles beside each other. Their contacts are no local minima while candidates within `margin`
@@ -131,6 +188,21 @@ impl TriangleShapes<'_> {
         self[inner].nearest_exit(middle)?;
         let out = if inner == 0 { -(self.pose.pos12.rotation * out) } else { out };
         Some(out.as_dvec3())
+    }
+}
+
+/// Returns true if few pairs of triangles of two meshes may be within the prediction distance. `poses` has each mesh's partner
+/// in the frame of the mesh.
+fn are_few_of_meshes(meshes: [&MeshView<'_>; 2], poses: [Pose; 2], prediction: Real) -> bool {
+    let count = |i: usize, most: usize| {
+        let around = BvhNode::leaf(meshes[1 - i].placed_root(&poses[i], prediction), 0);
+        meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
+    };
+    let least = MOST_PAIRS.isqrt();
+    match [0, 1].map(|i| count(i, least)) {
+        [one, _] if one <= least => one * count(1, MOST_PAIRS / one.max(1)) <= MOST_PAIRS,
+        [_, two] if two <= least => two * count(0, MOST_PAIRS / two.max(1)) <= MOST_PAIRS,
+        _ => false,
     }
 }
 

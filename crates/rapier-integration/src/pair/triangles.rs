@@ -17,7 +17,6 @@ use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
 use super::deep::{self, ContourMemory};
 use super::descents::DescentMemory;
-use super::far::{Directions, FarSearch};
 use super::inside::{HeldMesh, InsideTest};
 use super::islands::{Crossing, Overlap, OverlapIslands};
 use super::passed::PassedTriangles;
@@ -59,7 +58,8 @@ pub(crate) struct TriangleScratch {
     descent: DescentMemory,
     first: FirstPass,
     contours: ContourMemory,
-    directions: Directions,
+    /// Normals of contacts.
+    directions: Vec<DVec3>,
     passed: PassedTriangles,
 }
 
@@ -157,9 +157,9 @@ impl PairQuery for TriangleQuery<'_> {
             self.second_pass(islands, contours, clipped, contacts);
         }
         if limits.reach < f64::from(self.pose().prediction) {
-            self.add_far(!*is_near, lead_one_way, clipped, contacts);
+            self.shapes.add_far(!*is_near, lead_one_way, clipped, contacts);
         } else if limits.reach > self.shapes.filter_distance {
-            self.reject_aside(directions, islands, contacts);
+            self.shapes.reject_aside(directions, islands, contacts);
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
@@ -263,17 +263,6 @@ impl TriangleQuery<'_> {
         }
     }
 
-    /// Calls `then` with the filter of two triangles, if these exist. `may_pass`: their edges and vertices may pass each other.
-    fn with_filter<T>(
-        &self,
-        pair: [u32; 2],
-        may_pass: bool,
-        then: impl FnOnce(&SurfaceFilter<'_>) -> T,
-    ) -> Option<T> {
-        let local = self.shapes.local(pair)?;
-        Some(then(&SurfaceFilter::new(&self.shapes, pair, &local, may_pass)))
-    }
-
     /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.
     fn add_passing(&self, first: &mut FirstPass) {
         let FirstPass { contacts, upright, passing, islands, clipped, .. } = first;
@@ -285,7 +274,8 @@ impl TriangleQuery<'_> {
         let nearest = distances.fold(f64::INFINITY, f64::min);
         let is_nearest = |contact: &TriangleContact| contact.distance < NEARER * nearest;
         for &(pair, contact) in passing.iter().filter(|(_, contact)| is_nearest(contact)) {
-            let verdict = self.with_filter(pair, false, |filter| filter.apply(contact, clipped));
+            let verdict =
+                self.shapes.with_filter(pair, false, |filter| filter.apply(contact, clipped));
             if let Some(Verdict::Contact(hit, border)) = verdict {
                 contacts.push((pair, hit));
                 upright.extend(border.map(|border| (pair, border)));
@@ -295,77 +285,6 @@ impl TriangleQuery<'_> {
             contacts.sort_by_key(|(pair, _)| *pair);
             upright.sort_by_key(|(pair, _)| *pair);
         }
-    }
-
-    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way` is the result of
-    /// [`meet_borders`], and `clipped` is memory.
-    fn add_far(
-        &self,
-        is_apart: bool,
-        lead_one_way: bool,
-        clipped: &mut ManifoldPoints,
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        let (old_count, reach) = (contacts.len(), f64::from(self.shapes.reach()));
-        // The nearest contact counts, even if it may pass by.
-        let may_pass = old_count > 0;
-        let far = FarSearch(&self.shapes);
-        far.contacts(is_apart, |(pair, TriangleSurfaceContact { contact, .. })| {
-            if contact.distance <= reach {
-                return;
-            }
-            let verdict = self.with_filter(pair, may_pass, |filter| filter.apply(contact, clipped));
-            if let Some(Verdict::Contact(mut hit, upright)) = verdict {
-                hit.contact = upright.filter(|_| lead_one_way).unwrap_or(hit.contact);
-                contacts.push((pair, hit));
-            }
-        });
-        if contacts.len() > old_count {
-            contacts.sort_by(|(pair1, hit1), (pair2, hit2)| {
-                let by_distance = hit1.contact.distance.total_cmp(&hit2.contact.distance);
-                pair1.cmp(pair2).then(by_distance)
-            });
-            contacts.dedup_by_key(|(pair, _)| *pair);
-        }
-    }
-
-    /// Removes contacts beyond the filter distance, except those in the direction of a near contact or of a local
-    /// minimum of the distance. Shapes that cross also lose contacts that lead into solids: those would hold them in each
-    /// other. If no contact is near, the smaller shape may turn before it meets the larger one, or rests on a contact
-    /// skin. Only local minima of the larger one stay then; without any, all contacts stay.
-    fn reject_aside(
-        &self,
-        directions: &mut Directions,
-        islands: &OverlapIslands,
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        let limit = self.shapes.filter_distance;
-        let is_near = |contact: &TriangleContact| contact.distance <= limit;
-        if !contacts.iter().any(|(_, hit)| is_near(&hit.contact)) {
-            let is_minimum = |(pair, hit): &TriangleHit| {
-                let is_minimum =
-                    |filter: &SurfaceFilter<'_>| filter.is_minimum_of_larger(&hit.contact);
-                self.with_filter(*pair, true, is_minimum) == Some(true)
-            };
-            if contacts.iter().any(is_minimum) {
-                contacts.retain(is_minimum);
-            }
-            return;
-        }
-        directions.clear();
-        for (pair, TriangleSurfaceContact { contact, .. }) in &*contacts {
-            let is_minimum = |filter: &SurfaceFilter<'_>| filter.is_local_minimum(contact);
-            let counts =
-                || is_near(contact) || self.with_filter(*pair, true, is_minimum) == Some(true);
-            directions.add_if(contact.normal, counts);
-        }
-        let is_overlap = !islands.crossings.is_empty();
-        contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
-            let leads_inside = |filter: &SurfaceFilter<'_>| filter.leads_inside(contact);
-            is_near(contact)
-                || directions.has(contact.normal)
-                    && !(is_overlap && self.with_filter(*pair, true, leads_inside) == Some(true))
-        });
     }
 
     /// Removes the contacts of sheets that have passed sheets.
@@ -424,7 +343,7 @@ impl TriangleQuery<'_> {
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
             if islands.needs_support(crossing.pair) {
-                let contact = self.with_filter(crossing.pair, true, |filter| {
+                let contact = self.shapes.with_filter(crossing.pair, true, |filter| {
                     filter.supporting_contact(&crossing, islands, clipped)
                 });
                 contacts.extend(contact.flatten().map(|contact| (crossing.pair, contact)));

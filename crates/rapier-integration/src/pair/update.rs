@@ -14,7 +14,7 @@ use sbbk_core::traverse::{DescentCounts, SlackPlan};
 
 use super::query::{Limits, Pair, PairQuery, QueryMemory};
 use super::state::{CandidateMemory, PairState, state_in};
-use super::write::{Writer, write_every, write_patches};
+use super::write::Writer;
 use crate::mesh::MeshStore;
 
 /// Way in which a query was answered.
@@ -60,9 +60,9 @@ where
     let had_patches = memory.has_patches.replace(plan.is_some());
     let mut writer = Writer::begin(manifolds, had_patches);
     if let Some(plan) = plan {
-        write_patches(&mut query, &mut lent, plan, &mut writer);
+        writer.write_patches(&mut query, &mut lent, plan);
     } else {
-        write_every(&mut query, &mut lent, &mut writer);
+        writer.write_every(&mut query, &mut lent);
     }
     writer.end();
     if lent.demand.update(lent.contacts.len()).is_some_and(|limit| limit >= LEAST_KEPT) {

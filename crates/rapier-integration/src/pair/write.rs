@@ -163,55 +163,149 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         (0..).zip(&mut *old_points).for_each(|(place, old)| old.place = place);
         old_points.sort_unstable_by_key(|old| (old.part, old.place));
     }
+
+    /// Writes a manifold for each contact, in the order of subshapes.
+    pub(super) fn write_every<Q: PairQuery>(
+        &mut self,
+        query: &mut Q,
+        memory: &mut QueryMemory<Q::Scratch, Q::Contact>,
+    ) {
+        let QueryMemory { scratch, contacts, points, .. } = memory;
+        let were_patches = self.had_patches == Some(true);
+        if were_patches {
+            self.list_old_points();
+        }
+        // Patches and hosts may have another order.
+        if !self.manifolds.is_sorted_by_key(subshapes_of) {
+            self.manifolds.sort_by_key(subshapes_of);
+        }
+        let mut old = 0;
+        for contact in &*contacts {
+            query.points(contact, scratch, points);
+            if points.points.is_empty() {
+                continue;
+            }
+            while self.manifolds.get(old).is_some_and(|next| subshapes_of(next) < contact.0) {
+                self.retire(old);
+                old += 1;
+            }
+            if self.manifolds.get(old).is_some_and(|next| subshapes_of(next) == contact.0) {
+                write_contact(points, were_patches, &mut self.pool, &mut self.manifolds[old]);
+                self.keep_old(old);
+                old += 1;
+            } else {
+                let mut manifold = self.take_spare();
+                [manifold.subshape1, manifold.subshape2] = contact.0;
+                write_contact(points, were_patches, &mut self.pool, &mut manifold);
+                self.keep_new(manifold);
+            }
+        }
+        for rest in old..self.manifolds.len() {
+            self.retire(rest);
+        }
+    }
+
+    /// Writes patches: few manifolds of up to four points for all contacts.
+    ///
+    /// Contacts are chosen before their points are made, then points are chosen. Patches and points
+    /// keep the data of similar ones of the last query.
+    pub(super) fn write_patches<Q: PairQuery>(
+        &mut self,
+        query: &mut Q,
+        memory: &mut QueryMemory<Q::Scratch, Q::Contact>,
+        plan: PatchPlan,
+    ) {
+        let QueryMemory { scratch, contacts, reduction, points, .. } = memory;
+        reduction.members.clear();
+        reduction.members.extend((0..).zip(&*contacts).filter_map(|(index, contact)| {
+            let summary = query.summary(contact, scratch, points)?;
+            Some(Member { summary, contact: index, patch: 0 })
+        }));
+        reduction.reduce(plan);
+        self.list_old_points();
+        let Reduction { members, places, points: patch_points, beyond, .. } = reduction;
+        for members in members.chunk_by(|a, b| a.patch == b.patch) {
+            places.clear();
+            places.extend(members.iter().map(|member| member.summary.place()));
+            patch_points.clear();
+            for member in plan.outermost(places, members[0].summary.normal, beyond) {
+                let contact = members[member].contact;
+                let of = &contacts[contact as usize];
+                query.points(of, scratch, points);
+                let ContactPoints { normals, poses, .. } = *points;
+                patch_points.extend(points.points.iter().map(|&point| PatchPoint {
+                    point: named(point, of.0),
+                    contact,
+                    normals,
+                    poses,
+                }));
+            }
+            let distance = |point: &PatchPoint| point.point.dist;
+            let depths = patch_points.iter().map(distance).enumerate();
+            let Some((deepest, _)) = depths.min_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+                continue;
+            };
+            patch_points.swap(0, deepest);
+            places.clear();
+            places.extend(patch_points.iter().map(|point| (point.point.local_p1, distance(point))));
+            let mut chosen = plan.outermost(places, patch_points[0].normals[0], beyond);
+            while !chosen.is_empty() {
+                self.write_patch(plan, patch_points, &mut chosen, |contact| contacts[contact].0);
+            }
+        }
+        for rest in 0..self.manifolds.len() {
+            self.retire(rest);
+        }
+    }
+
+    /// Writes a manifold of the deepest of the chosen points and those that have its normal, and removes
+    /// them from the list.
+    fn write_patch(
+        &mut self,
+        plan: PatchPlan,
+        points: &[PatchPoint],
+        chosen: &mut ArrayVec<usize, MOST_POINTS>,
+        subshapes: impl Fn(usize) -> [u32; 2],
+    ) {
+        let distance = |i: &usize| points[*i].point.dist;
+        let Some(&deepest) = chosen.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        else {
+            return;
+        };
+        let PatchPoint { contact, normals: [normal1, normal2], poses: [pose1, pose2], .. } =
+            points[deepest];
+        let subshapes = subshapes(contact as usize);
+        let part = part_at([&pose1, &pose2].map(Option::is_some), subshapes);
+        let mut manifold = self.take_like(part, normal1);
+        [manifold.subshape1, manifold.subshape2] = subshapes;
+        manifold.set_subshape_pos1(pose1);
+        manifold.set_subshape_pos2(pose2);
+        (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
+        manifold.points.clear();
+        // Far points carry nothing.
+        let within = if plan.far.is_finite() { plan.size } else { 0.0 };
+        let one_normal = if distance(&deepest) > plan.far { -1.0 } else { plan.one_normal };
+        chosen.retain(|i| {
+            let PatchPoint { point, normals, .. } = &points[*i];
+            // The deepest one also where cones have left no unit vector.
+            let is_of_normal = *i == deepest || normals[0].dot(normal1) >= one_normal;
+            if is_of_normal {
+                let old_points = &mut self.pool.old_points;
+                let old = find_old(point, normal1, part, old_points, within);
+                let data = old.map_or_else(C::default, |old| {
+                    old_points[old].is_taken = true;
+                    old_points[old].point.data
+                });
+                manifold.points.push(with_data(point, data));
+            }
+            !is_of_normal
+        });
+        self.keep_new(manifold);
+    }
 }
 
 fn subshapes_of<M, C>(manifold: &ContactManifold<M, C>) -> [u32; 2] {
     [manifold.subshape1, manifold.subshape2]
-}
-
-/// Writes a manifold for each contact, in the order of subshapes.
-pub(super) fn write_every<Q, M, C>(
-    query: &mut Q,
-    memory: &mut QueryMemory<Q::Scratch, Q::Contact>,
-    writer: &mut Writer<'_, M, C>,
-) where
-    Q: PairQuery,
-    M: Default + 'static,
-    C: Default + Copy + 'static,
-{
-    let QueryMemory { scratch, contacts, points, .. } = memory;
-    let were_patches = writer.had_patches == Some(true);
-    if were_patches {
-        writer.list_old_points();
-    }
-    // Patches and hosts may have another order.
-    if !writer.manifolds.is_sorted_by_key(subshapes_of) {
-        writer.manifolds.sort_by_key(subshapes_of);
-    }
-    let mut old = 0;
-    for contact in &*contacts {
-        query.points(contact, scratch, points);
-        if points.points.is_empty() {
-            continue;
-        }
-        while writer.manifolds.get(old).is_some_and(|next| subshapes_of(next) < contact.0) {
-            writer.retire(old);
-            old += 1;
-        }
-        if writer.manifolds.get(old).is_some_and(|next| subshapes_of(next) == contact.0) {
-            write_contact(points, were_patches, &mut writer.pool, &mut writer.manifolds[old]);
-            writer.keep_old(old);
-            old += 1;
-        } else {
-            let mut manifold = writer.take_spare();
-            [manifold.subshape1, manifold.subshape2] = contact.0;
-            write_contact(points, were_patches, &mut writer.pool, &mut manifold);
-            writer.keep_new(manifold);
-        }
-    }
-    for rest in old..writer.manifolds.len() {
-        writer.retire(rest);
-    }
 }
 
 /// Replaces the points and the poses of a manifold.
@@ -274,108 +368,6 @@ fn take_data<M, C: Default + Copy>(manifold: &mut ContactManifold<M, C>, old: &[
             |old: &&OldPoint<C>| (old.point.fid1, old.point.fid2) == (names.fid1, names.fid2);
         point.data = old.iter().find(is_same).map_or_else(C::default, |old| old.point.data);
     }
-}
-
-/// Writes patches: few manifolds of up to four points for all contacts.
-///
-/// Contacts are chosen before their points are made, then points are chosen. Patches and points
-/// keep the data of similar ones of the last query.
-pub(super) fn write_patches<Q, M, C>(
-    query: &mut Q,
-    memory: &mut QueryMemory<Q::Scratch, Q::Contact>,
-    plan: PatchPlan,
-    writer: &mut Writer<'_, M, C>,
-) where
-    Q: PairQuery,
-    M: Default + 'static,
-    C: Default + Copy + 'static,
-{
-    let QueryMemory { scratch, contacts, reduction, points, .. } = memory;
-    reduction.members.clear();
-    reduction.members.extend((0..).zip(&*contacts).filter_map(|(index, contact)| {
-        let summary = query.summary(contact, scratch, points)?;
-        Some(Member { summary, contact: index, patch: 0 })
-    }));
-    reduction.reduce(plan);
-    writer.list_old_points();
-    let Reduction { members, places, points: patch_points, beyond, .. } = reduction;
-    for members in members.chunk_by(|a, b| a.patch == b.patch) {
-        places.clear();
-        places.extend(members.iter().map(|member| member.summary.place()));
-        patch_points.clear();
-        for member in plan.outermost(places, members[0].summary.normal, beyond) {
-            let contact = members[member].contact;
-            let of = &contacts[contact as usize];
-            query.points(of, scratch, points);
-            let ContactPoints { normals, poses, .. } = *points;
-            patch_points.extend(points.points.iter().map(|&point| PatchPoint {
-                point: named(point, of.0),
-                contact,
-                normals,
-                poses,
-            }));
-        }
-        let distance = |point: &PatchPoint| point.point.dist;
-        let depths = patch_points.iter().map(distance).enumerate();
-        let Some((deepest, _)) = depths.min_by(|(_, a), (_, b)| a.total_cmp(b)) else { continue };
-        patch_points.swap(0, deepest);
-        places.clear();
-        places.extend(patch_points.iter().map(|point| (point.point.local_p1, distance(point))));
-        let mut chosen = plan.outermost(places, patch_points[0].normals[0], beyond);
-        while !chosen.is_empty() {
-            write_patch(plan, patch_points, &mut chosen, writer, |contact| contacts[contact].0);
-        }
-    }
-    for rest in 0..writer.manifolds.len() {
-        writer.retire(rest);
-    }
-}
-
-/// Writes a manifold of the deepest of the chosen points and those that have its normal, and removes
-/// them from the list.
-fn write_patch<M, C>(
-    plan: PatchPlan,
-    points: &[PatchPoint],
-    chosen: &mut ArrayVec<usize, MOST_POINTS>,
-    writer: &mut Writer<'_, M, C>,
-    subshapes: impl Fn(usize) -> [u32; 2],
-) where
-    M: Default + 'static,
-    C: Default + Copy + 'static,
-{
-    let distance = |i: &usize| points[*i].point.dist;
-    let Some(&deepest) = chosen.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
-        return;
-    };
-    let PatchPoint { contact, normals: [normal1, normal2], poses: [pose1, pose2], .. } =
-        points[deepest];
-    let subshapes = subshapes(contact as usize);
-    let part = part_at([&pose1, &pose2].map(Option::is_some), subshapes);
-    let mut manifold = writer.take_like(part, normal1);
-    [manifold.subshape1, manifold.subshape2] = subshapes;
-    manifold.set_subshape_pos1(pose1);
-    manifold.set_subshape_pos2(pose2);
-    (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
-    manifold.points.clear();
-    // Far points carry nothing.
-    let within = if plan.far.is_finite() { plan.size } else { 0.0 };
-    let one_normal = if distance(&deepest) > plan.far { -1.0 } else { plan.one_normal };
-    chosen.retain(|i| {
-        let PatchPoint { point, normals, .. } = &points[*i];
-        // The deepest one also where cones have left no unit vector.
-        let is_of_normal = *i == deepest || normals[0].dot(normal1) >= one_normal;
-        if is_of_normal {
-            let old_points = &mut writer.pool.old_points;
-            let old = find_old(point, normal1, part, old_points, within);
-            let data = old.map_or_else(C::default, |old| {
-                old_points[old].is_taken = true;
-                old_points[old].point.data
-            });
-            manifold.points.push(with_data(point, data));
-        }
-        !is_of_normal
-    });
-    writer.keep_new(manifold);
 }
 
 /// Returns the part whose frame a manifold's points are in; 0 for the frame of the shape.

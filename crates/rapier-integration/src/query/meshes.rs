@@ -15,8 +15,8 @@ use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
 use super::bvh_search::BvhSearch;
-use super::found::{Found, status};
 use super::nonlinear::NonlinearCast;
+use super::{Found, status};
 use crate::mesh::{MeshData, MeshView, is_minimum};
 
 thread_local! {

@@ -5,7 +5,6 @@
 //! use the BVH of the mesh. [`nonlinear`] and [`moving`] cast along the curves of rigid motions.
 
 mod bvh_search;
-mod found;
 mod meshes;
 mod moving;
 mod nonlinear;
@@ -13,13 +12,16 @@ mod nonlinear;
 pub(crate) use meshes::MeshQuery;
 pub(crate) use nonlinear::NonlinearCast;
 
-use found::{Found, status};
 use moving::MovingConvex;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
-use parry3d::query::{ClosestPoints, Contact, ShapeCastHit, ShapeDistance, ShapeIntersection};
+use parry3d::query::{
+    ClosestPoints, Contact, ShapeCastHit, ShapeCastStatus, ShapeDistance, ShapeIntersection,
+};
+use sbbk_core::query::{FoundPair, PartPair};
+use sbbk_core::traverse::Placement;
 
-use crate::pair::{ConvexSearch, FoundCast};
+use crate::pair::{ConvexSearch, FoundCast, FoundTriangle, MeshPlace, PlacedPart};
 
 /// Two shapes at a pose.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time, on the stack")]
@@ -115,4 +117,79 @@ impl Query<'_> {
 /// Returns a limit of Parry's in f64. Parry's largest number stands for no limit.
 fn limit_of(distance: Real) -> f64 {
     if distance == Real::MAX { f64::INFINITY } else { f64::from(distance) }
+}
+
+/// Two subshapes that a query found.
+#[derive(Copy, Clone)]
+struct Found {
+    subshapes: [u32; 2],
+    /// The distance, or minus the depth.
+    distance: f64,
+    is_touching: bool,
+    /// The points that are nearest or touch, each in its own frame.
+    points: [Vector; 2],
+    /// The outward unit normals there, each in its own frame.
+    normals: [Vector; 2],
+}
+
+impl Found {
+    /// Two triangles of meshes.
+    fn of_pair(pair: &FoundPair, placement: &Placement) -> Self {
+        Self {
+            subshapes: pair.name(),
+            distance: pair.contact.distance,
+            is_touching: pair.is_touching,
+            points: [pair.point1(), pair.point2(placement)],
+            normals: [pair.normal1(), pair.normal2(placement)],
+        }
+    }
+
+    /// A triangle and a convex shape.
+    fn of_triangle(found: &FoundTriangle, search: &ConvexSearch<'_>) -> Self {
+        Self::of_placed(found, search.mesh_place, &search.placed)
+    }
+
+    /// A triangle and a convex shape at another place.
+    fn of_placed(found: &FoundTriangle, mesh_place: MeshPlace, placed: &PlacedPart) -> Self {
+        Self {
+            subshapes: mesh_place.swap([found.triangle, 0]),
+            distance: found.contact.distance,
+            is_touching: found.is_touching,
+            points: mesh_place.swap(found.points(placed)),
+            normals: mesh_place.swap(found.normals(placed)),
+        }
+    }
+
+    /// The impact at a time.
+    fn hit(&self, time: f64, status: ShapeCastStatus) -> ShapeCastHit {
+        ShapeCastHit {
+            time_of_impact: time as Real,
+            witness1: self.points[0],
+            witness2: self.points[1],
+            normal1: self.normals[0],
+            normal2: self.normals[1],
+            status,
+            subshape1: self.subshapes[0],
+            subshape2: self.subshapes[1],
+        }
+    }
+}
+
+impl PartPair for Found {
+    fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    fn name(&self) -> [u32; 2] {
+        self.subshapes
+    }
+}
+
+/// How a linear cast ends.
+fn status(is_penetrating: bool) -> ShapeCastStatus {
+    if is_penetrating {
+        ShapeCastStatus::PenetratingOrWithinTargetDist
+    } else {
+        ShapeCastStatus::Converged
+    }
 }

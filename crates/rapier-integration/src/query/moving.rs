@@ -12,7 +12,7 @@ use parry3d::query::NonlinearRigidMotion;
 use sbbk_core::query::{Advance, AdvanceOptions, Bodies, advance};
 use sbbk_core::traverse::Placement;
 
-use super::found::Found;
+use super::Found;
 use super::nonlinear::{NonlinearCast, approach_bound, place, reach, turned};
 use crate::pair::ConvexSearch;
 

@@ -7,7 +7,7 @@ use sbbk_core::query::{Advance, AdvanceOptions, Bodies, FoundPair, advance, adva
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
-use super::found::Found;
+use super::Found;
 
 /// Distance at which bodies have met, as a share of the radius of the smaller body. Higher: fewer steps,
 /// earlier impacts; lower: more steps.

@@ -4,18 +4,15 @@
 //! therefore approaches the first impact from before, or shows that there is none. Normals of curved
 //! shapes are not exact: after a step that goes too far, the next one uses the rule of false position.
 
-use std::cell::Cell;
-
 use glamx::DVec3;
 use parry3d::math::Real;
-use parry3d::partitioning::BvhNode;
 use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::convex::ConvexContact;
 
 use super::contact::{core_contact, core_support};
 use super::near::time_of;
 use super::search::{ConvexSearch, FoundTriangle};
-use crate::mesh::{box_of, is_minimum};
+use crate::mesh::is_minimum;
 use crate::pair::pose::MeshPlace;
 
 /// Bodies that are this much farther than the target at the start are within it, as a share of size. At this share
@@ -58,23 +55,13 @@ impl ConvexSearch<'_> {
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
         let latest = f64::from(max_time_of_impact);
         let may_slide = !options.stop_at_penetration && target > 0.0;
-        // Parry returns costs below the limit only.
-        let first = Cell::new(None);
-        self.mesh.mesh.bvh().find_best(
-            max_time_of_impact.next_up(),
-            |node: &BvhNode, _| time(box_of(node)),
-            |triangle, best| {
-                let latest = latest.min(best.into());
-                let cast = self.cast_triangle(triangle, of_triangle, options, latest)?;
-                let time = cast.time as Real;
-                if time >= best || may_slide && !self.is_minimum(&cast.found) {
-                    return None;
-                }
-                first.set(Some(cast));
-                Some(time)
-            },
-        );
-        first.into_inner()
+        self.least(latest, time, |triangle, best| {
+            let latest = latest.min(best);
+            let cast = self.cast_triangle(triangle, of_triangle, options, latest)?;
+            let time = cast.time as Real;
+            let is_later = f64::from(time) >= best;
+            (!is_later && (!may_slide || self.is_minimum(&cast.found))).then_some((time, cast))
+        })
     }
 
     /// Returns false if the mesh is nearer to the shape beside the point of an impact.

@@ -22,7 +22,7 @@ pub(super) fn triangles_near(
     mesh: &MeshView<'_>,
     margin: Real,
     mut counters: impl Counters,
-    found: impl FnMut(u32) -> ControlFlow<()>,
+    mut found: impl FnMut(u32) -> ControlFlow<()>,
 ) {
     let (tested, magnitude) = (Cell::new(0), mesh.magnitude());
     let count = || tested.set(tested.get() + 1);
@@ -32,7 +32,7 @@ pub(super) fn triangles_near(
             count();
             lowest(node, normal) <= height
         };
-        mesh.near(is_below, found)
+        mesh.near(is_below).try_for_each(&mut found)
     } else if let ConvexShape::Ball(ball) = shape {
         if !placed.placement.is_finite() {
             return;
@@ -47,7 +47,7 @@ pub(super) fn triangles_near(
             let beside = ((middle - centre).abs() - extent).max(Vec3::ZERO);
             beside.length_squared() <= beyond * beyond
         };
-        mesh.near(is_near, found)
+        mesh.near(is_near).try_for_each(&mut found)
     } else {
         let (min, max, radius) = placed.extent.bounds();
         let size = min.abs().max(max.abs()).max_element();
@@ -58,7 +58,7 @@ pub(super) fn triangles_near(
             count();
             near.meets(node)
         };
-        mesh.near(meets, found)
+        mesh.near(meets).try_for_each(&mut found)
     };
     counters.aabb_tests(tested.get());
 }

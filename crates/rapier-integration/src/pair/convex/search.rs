@@ -225,7 +225,7 @@ impl<'a> ConvexSearch<'a> {
 
     /// Returns the triangle with the least cost up to a limit. `bound` is a lower bound of the costs in
     /// a box.
-    fn least<T>(
+    pub(super) fn least<T>(
         &self,
         limit: f64,
         bound: impl Fn(TestedBox) -> Real,

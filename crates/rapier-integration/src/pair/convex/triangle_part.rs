@@ -10,15 +10,15 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::strays::seam;
 
 use super::contact::{NormalSource, PartContact};
-use super::pair::ConvexPair;
 use super::parts::Part;
 use super::placed::PlacedPart;
 use super::points::{FACE, PointPair, contact_points, ray_length};
+use super::query::ConvexPair;
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
-use crate::pair::ranges::{filter_distance, filter_unit};
 use crate::pair::reduce::ContactSummary;
 use crate::pair::surface::LIP;
+use crate::pair::triangle_shapes::{filter_distance, filter_unit};
 
 /// Least cosine between the normals of a contact and of a face whose normal it takes. Higher: shapes deep in a mesh stumble
 /// over internal edges. Lower: shapes half within a wall are pushed through it.
