@@ -1,9 +1,8 @@
 //! A pair of shapes: from a pose to contact manifolds.
 //!
-//! [`update`] is the pipeline. The table of steps in `ARCHITECTURE.md` says which file does what.
+//! [`query`] is the pipeline. The table of steps in `ARCHITECTURE.md` says which file does what.
 
 mod borders;
-mod bvh_descent;
 mod chunks;
 mod convex;
 mod deep;
@@ -12,7 +11,6 @@ mod far;
 mod field;
 mod inside;
 mod islands;
-mod mesh_pair;
 mod passed;
 mod pose;
 mod query;
@@ -23,15 +21,14 @@ mod triangle_contacts;
 mod triangle_shape;
 mod triangle_shapes;
 mod triangles;
-mod update;
 mod write;
 
-pub(crate) use bvh_descent::BvhDescent;
 pub(crate) use convex::{
     ConvexPair, ConvexSearch, ConvexShape, FoundCast, FoundTriangle, Parts, PlacedPart,
 };
+pub(crate) use descents::BvhDescent;
 pub(crate) use field::Field;
-pub(crate) use mesh_pair::{MeshPair, ShapeView};
 pub(crate) use pose::{MeshPlace, PairPose};
+pub(crate) use query::{QueryOutcome, update_manifolds};
 pub use triangle_contacts::TriangleContacts;
-pub(crate) use update::{QueryOutcome, update_manifolds};
+pub(crate) use triangle_shapes::{MeshPair, ShapeView};

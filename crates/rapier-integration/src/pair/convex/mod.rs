@@ -1,6 +1,6 @@
 //! A mesh and convex shapes: one, or the parts of a compound or a polyline.
 //!
-//! * [`shape`], [`parts`], [`placed`]: Parry's shapes, with bounds and poses.
+//! * [`shape`], [`parts`]: Parry's shapes, with bounds and poses.
 //! * [`near`]: descends Parry's BVH of the mesh with the box of a part in the frame of the part.
 //! * [`contact`]: the exact contact of a triangle and a part.
 //! * [`triangle_part`], [`points`]: write a contact to a manifold.
@@ -14,7 +14,6 @@ mod ghosts;
 mod internal_edges;
 mod near;
 mod parts;
-mod placed;
 mod points;
 mod push_out;
 mod query;
@@ -23,8 +22,7 @@ mod shape;
 mod triangle_part;
 
 pub(crate) use cast::FoundCast;
-pub(crate) use parts::Parts;
-pub(crate) use placed::PlacedPart;
+pub(crate) use parts::{Parts, PlacedPart};
 pub(crate) use query::ConvexPair;
 pub(crate) use search::{ConvexSearch, FoundTriangle};
 pub(crate) use shape::ConvexShape;

@@ -10,7 +10,7 @@ use parry3d::shape::HalfSpace;
 use sbbk_core::traverse::{BoxTest, Counters, Placement, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
-use super::placed::PlacedPart;
+use super::parts::PlacedPart;
 use super::shape::ConvexShape;
 use crate::mesh::MeshView;
 

@@ -13,8 +13,7 @@ use sbbk_core::volumes::Sphere;
 
 use super::contact::{KeptHull, core_contact, core_support, core_touches};
 use super::near::{gap_of, time_of, triangles_near};
-use super::parts::Part;
-use super::placed::PlacedPart;
+use super::parts::{Part, PlacedPart};
 use super::shape::{ConvexShape, Extent};
 use crate::mesh::{MeshView, box_of};
 use crate::pair::pose::{MeshPlace, PairPose};

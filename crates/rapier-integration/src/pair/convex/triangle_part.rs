@@ -10,8 +10,7 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::strays::seam;
 
 use super::contact::{NormalSource, PartContact};
-use super::parts::Part;
-use super::placed::PlacedPart;
+use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, ray_length};
 use super::query::ConvexPair;
 use super::shape::ConvexShape;
