@@ -2,15 +2,12 @@
 //! leaf tests and height fields. Each test fails if what the arithmetic loses there is not
 //! allowed for; the numbers are in `sbbk_core::volumes::rounding`.
 
+use crate::descent;
 use crate::field::grid::Grid;
 use crate::support::{Random, Soup, bumpy_ball, descend_field};
 use glamx::{DVec3, Pose3, Vec3};
 use sbbk_core::field::FieldFrame;
-use sbbk_core::leaf::LeafTest;
-use sbbk_core::traverse::{
-    BoxTest, DescentScratch, PairFrame, Placement, Slack, SlackLimits, SlackPlan, TestedBox,
-    descend,
-};
+use sbbk_core::traverse::{BoxTest, Placement, Slack, SlackLimits, SlackPlan, TestedBox};
 use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
 use sbbk_core::volumes::{SLABS, Sphere, directions};
 use sbbk_truth as truth;
@@ -19,14 +16,7 @@ const KDOPS: LayerPlan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1)
 
 /// The number of pairs of triangles that are found.
 fn survivors(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> usize {
-    let mut frame = PairFrame::new((tree1, tree2), Placement::new(pos12), margin);
-    let test = LeafTest::new(&frame);
-    let mut survivors = 0;
-    let scratch = &mut DescentScratch::default();
-    descend((tree1, tree2), &mut frame, scratch, (), |batch1, batch2| {
-        test.survivors(batch1, batch2, |_, _| survivors += 1);
-    });
-    survivors
+    descent::survivors((tree1, tree2), pos12, margin).0.len()
 }
 
 /// Two triangles in frames of their own, near each other, and how far they are apart in truth.

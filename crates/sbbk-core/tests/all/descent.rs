@@ -12,7 +12,7 @@ use sbbk_core::traverse::{DescentCounts, DescentScratch, PairFrame, Placement, d
 use sbbk_core::tree::{BuildOptions, LayerPlan, Node, Tree};
 
 /// The pairs of triangles that descent and leaf test leave.
-fn survivors(
+pub fn survivors(
     trees: (&Tree, &Tree),
     pos12: &Pose3,
     margin: f32,

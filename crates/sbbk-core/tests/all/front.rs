@@ -54,12 +54,7 @@ fn from_front(
 
 /// A pose that goes on step by step: slow, jittering, fast, far away, not finite, at rest.
 fn next_pose(random: &mut Random, pose: &mut Pose3, spread: f32) -> Pose3 {
-    let mut moved = |pose: &Pose3, size: f32| {
-        let turn = Quat::from_scaled_axis(random.vector(size));
-        let rotation = (turn * pose.rotation).normalize();
-        Pose3::from_parts(pose.translation + random.vector(size), rotation)
-    };
-    let (slow, fast, jitter) = (moved(pose, 1e-3), moved(pose, 0.1), moved(pose, 1e-3));
+    let [slow, fast, jitter] = [1e-3, 0.1, 1e-3].map(|size| random.near(pose, size));
     match random.bits() % 16 {
         0..6 => *pose = slow,
         6..9 => return jitter,

@@ -1,7 +1,7 @@
 //! The motion bound and the map of a placement.
 
 use crate::support::Random;
-use glamx::{DPose3, DVec3, Pose3};
+use glamx::{DPose3, DVec3};
 use sbbk_core::traverse::Placement;
 
 /// Would catch a bound without the lever of the rotation, the motion of the centre in the wrong
@@ -14,10 +14,7 @@ fn no_point_moves_farther_than_the_bound() {
         let (centre, radius) = (random.vector(3.0), random.range(0.0, 2.0));
         let before = random.pose(5.0);
         let size = [1e-4, 1e-2, 1.0][i % 3];
-        let turn = glamx::Quat::from_scaled_axis(random.vector(size));
-        let mut after =
-            Pose3::from_parts(before.translation + random.vector(size), turn * before.rotation);
-        after.rotation = after.rotation.normalize();
+        let after = random.near(&before, size);
         let placements = [Placement::new(&before), Placement::new(&after)];
         let bound = placements[1].motion_bound(&placements[0], centre, radius);
         for _ in 0..20 {

@@ -3,7 +3,8 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use crate::support::{Random, Soup, cube};
+use crate::support::{Random, Soup};
+use crate::surface::shapes::{cube, mapped, together};
 use glamx::{DVec3, Vec3};
 use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, Surface, side};
 
@@ -22,20 +23,10 @@ fn boxes(random: &mut Random, count: usize, size: u64, is_lattice: bool) -> Vec<
     (0..count).map(|_| [steps(0, size), 0.5 * steps(1, 4)]).collect()
 }
 
-/// Twelve triangles a box, with outward normals.
+/// Twelve triangles a box, with outward normals. The first two are its bottom.
 fn soup(boxes: &[Cuboid]) -> Soup {
-    let mut soup = Soup { vertices: Vec::new(), triangles: Vec::new() };
-    for [middle, half] in boxes {
-        let cube = cube(1);
-        let first = soup.vertices.len() as u32;
-        soup.vertices.extend(cube.vertices.iter().map(|&corner| *middle + corner * *half));
-        let outward = cube.triangles.iter().enumerate().map(|(i, &[a, b, c])| {
-            let of = if i < 6 { [a, c, b] } else { [a, b, c] };
-            of.map(|corner| first + corner)
-        });
-        soup.triangles.extend(outward);
-    }
-    soup
+    let cuboid = |[middle, half]: &Cuboid| mapped(cube(), |v| middle + 2.0 * v * half);
+    together(boxes.iter().map(cuboid))
 }
 
 /// Returns true if the boxes cover both sides of a triangle at a place.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::support::Random;
-use glamx::{Pose3, Quat, Vec3};
+use glamx::{Pose3, Vec3};
 use sbbk_core::traverse::{Placement, Slack, SlackLimits, SlackPlan};
 use sbbk_core::volumes::Sphere;
 
@@ -30,12 +30,6 @@ impl Points {
     }
 }
 
-fn nudge(random: &mut Random, size: f32, pose: &Pose3) -> Pose3 {
-    let turn = Quat::from_scaled_axis(random.vector(size));
-    let rotation = (turn * pose.rotation).normalize();
-    Pose3::from_parts(pose.translation + random.vector(size), rotation)
-}
-
 /// Walks with jumps and changes of stride and prediction distance, against brute force at each
 /// step. Would catch candidates used for too long, a travel that is too small, and a wrong margin.
 #[test]
@@ -55,7 +49,7 @@ fn candidates_are_complete_while_they_are_reused() {
                 0 => pose = random.pose(0.5),
                 1 => stride = [0.0, 1e-5, 1e-3, 5e-3, 5e-2][step % 5],
                 2 => prediction = [0.0, 0.02, 0.05, 0.2][step % 4],
-                _ => pose = nudge(&mut random, stride, &pose),
+                _ => pose = random.near(&pose, stride),
             }
             let placement = Placement::new(&pose);
             let expected = points.within(&placement, prediction.into());

@@ -145,6 +145,13 @@ impl Random {
     pub fn pose(&mut self, distance: f32) -> Pose3 {
         Pose3::from_parts(self.vector(distance), self.rotation())
     }
+
+    /// A pose near another one: turned and moved by about `size` (radians, units).
+    pub fn near(&mut self, pose: &Pose3, size: f32) -> Pose3 {
+        let turn = Quat::from_scaled_axis(self.vector(size));
+        let rotation = (turn * pose.rotation).normalize();
+        Pose3::from_parts(pose.translation + self.vector(size), rotation)
+    }
 }
 
 /// A bumpy ball of radius about 1: `2 · rings · (2 · rings)` triangles less the poles.

@@ -5,7 +5,7 @@ mod cones;
 /// Solids and sheets.
 mod kinds;
 /// Meshes whose kind is known.
-mod shapes;
+pub mod shapes;
 
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Vec3};

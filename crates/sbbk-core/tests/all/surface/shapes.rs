@@ -18,7 +18,7 @@ pub fn unwelded(mesh: &Soup) -> Soup {
 }
 
 /// All of some meshes.
-pub fn together<const N: usize>(meshes: [Soup; N]) -> Soup {
+pub fn together(meshes: impl IntoIterator<Item = Soup>) -> Soup {
     let mut all = Soup { vertices: Vec::new(), triangles: Vec::new() };
     for mesh in meshes {
         let first = all.vertices.len() as u32;
