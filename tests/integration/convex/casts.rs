@@ -8,9 +8,9 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{SharedShape, TriMesh};
 use sbbk_testkit::mesh;
-use sbbk_testkit::truth::convex_body;
+use sbbk_testkit::truth::{affine, convex_body};
 
-use super::queries::{least, truth};
+use super::queries::least_at;
 use super::shapes::{pose, shapes};
 use crate::proximity::LinearCast;
 use crate::support::{Question, direction, rotation, shape};
@@ -28,7 +28,7 @@ fn first_impacts_are_those_of_brute_force() {
         let mesh = shape(&mesh::monkey_head_with(6).centred().scaled_to(size));
         let tolerance = 4.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
-            let body = convex_body(&other);
+            let (body, around) = (convex_body(&other), other.compute_local_aabb());
             let mut random = Rand32::new(seed);
             for i in 0..4 {
                 let way = direction(&mut random);
@@ -44,8 +44,8 @@ fn first_impacts_are_those_of_brute_force() {
                 let question = Question::new(&mesh, &*other, in_mesh).flipped(i % 2 > 0);
                 let cast = LinearCast { question, velocity: -2.0 * size * way, options };
                 let left = |time: Real| {
-                    let distance = least(&truth(&mesh, &body, &cast.at(time).pose));
-                    distance - f64::from(options.target_distance)
+                    let in_body = affine(&cast.at(time).pose).inverse();
+                    least_at(&mesh, &body, &around, in_body) - f64::from(options.target_distance)
                 };
                 if left(0.0) <= 0.0 {
                     continue;

@@ -11,6 +11,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, Pose, RigidBodyBuilder, RigidBodyHandle};
 use sbbk_testkit::mesh;
 
+use super::moving::walled;
 use crate::support::shape;
 use crate::worlds::on_ground;
 
@@ -81,17 +82,6 @@ fn shapes_that_slide_over_a_mesh_make_all_of_their_way() {
     }
 }
 
-/// A floor with a wall across it, which is a sheet.
-fn walled() -> TriMesh {
-    let floor = mesh::floor(60.0, 60);
-    let (mut vertices, mut triangles) = (floor.vertices, floor.triangles);
-    let first = vertices.len() as u32;
-    let corners = [[8.0, -1.0, -9.0], [8.0, -1.0, 9.0], [8.0, 9.0, 9.0], [8.0, 9.0, -9.0]];
-    vertices.extend(corners.map(Vec3::from));
-    triangles.extend([[0, 1, 2], [0, 2, 3]].map(|triangle| triangle.map(|i| first + i)));
-    TriMesh::new(vertices, triangles).unwrap()
-}
-
 /// Would catch an impact that is lost, as the shape is in contact with the floor at the start.
 #[test]
 fn fast_shapes_on_a_floor_stop_at_a_wall() {
@@ -99,7 +89,7 @@ fn fast_shapes_on_a_floor_stop_at_a_wall() {
         for speed in [20.0, 60.0, 200.0] {
             for phase in 0..4 {
                 let start = Vec3::new(-0.7 * phase as Real - 2.0, 0.0, 0.13);
-                let (mut world, body) = slider.world(walled(), start, speed * Vec3::X);
+                let (mut world, body) = slider.world(walled(60.0, 60, 8.0), start, speed * Vec3::X);
                 let mut farthest = start.x;
                 for _ in 0..40 {
                     world.step();
@@ -115,7 +105,7 @@ fn fast_shapes_on_a_floor_stop_at_a_wall() {
 /// shape may sink in by a tenth of its thickness.
 #[test]
 fn casts_along_a_floor_meet_the_wall() {
-    let (dispatcher, mesh) = (SbbkDispatcher::default(), walled());
+    let (dispatcher, mesh) = (SbbkDispatcher::default(), walled(60.0, 60, 8.0));
     let random = &mut Rand32::new(7);
     let still = NonlinearRigidMotion::constant_position(Pose::IDENTITY);
     let mut hits = 0;

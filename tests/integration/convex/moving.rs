@@ -1,10 +1,22 @@
-use glamx::{DAffine3, DQuat, Pose3};
+use glamx::{DAffine3, DQuat, Pose3, Vec3};
 use rapier3d::math::Real;
 use rapier3d::parry::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastHit};
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
+use sbbk_testkit::mesh;
 use sbbk_truth::ConvexBody;
 
-use super::queries::{least, truth_at, truth_of};
+use super::queries::{least_at, truth_of};
+use crate::support::shape;
+
+/// A floor of this side with a wall across it, which is a sheet and the last triangle.
+pub(super) fn walled(side: Real, cells: u32, place: Real) -> TriMesh {
+    let mut floor = mesh::floor(side, cells);
+    let first = floor.vertices.len() as u32;
+    let corners = [[place, -1.0, -9.0], [place, -1.0, 9.0], [place, 9.0, 0.0]];
+    floor.vertices.extend(corners.map(Vec3::from_array));
+    floor.triangles.push([first, first + 1, first + 2]);
+    shape(&floor)
+}
 
 /// A mesh and a shape on their ways until some time.
 #[derive(Clone, Copy)]
@@ -57,7 +69,7 @@ impl<'a> Cast<'a> {
     /// The least distance, or minus the greatest depth, of a triangle.
     pub fn distance(&self, body: &ConvexBody, time: f64) -> f64 {
         let [mesh, shape] = self.places(time);
-        least(&truth_at(self.mesh, body, shape.inverse() * mesh))
+        least_at(self.mesh, body, &self.shape.compute_local_aabb(), shape.inverse() * mesh)
     }
 
     /// No point of one moves faster than this against the other: seen from where the shape is, and

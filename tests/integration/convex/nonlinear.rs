@@ -12,7 +12,7 @@ use sbbk_testkit::mesh;
 use sbbk_testkit::truth::convex_body;
 use sbbk_truth::ConvexBody;
 
-use super::moving::Cast;
+use super::moving::{Cast, walled};
 use super::queries::truth_at;
 use super::shapes::{lattice_pose, pose, shapes};
 use crate::support::{direction, reach, rotation, shape};
@@ -141,16 +141,6 @@ fn reach_of(shape: &SharedShape) -> Real {
     }
 }
 
-/// A floor with a wall at the end, of triangles a unit wide or of a few large ones.
-fn room(cells: u32) -> TriMesh {
-    let floor = mesh::floor(20.0, cells);
-    let (mut vertices, mut triangles) = (floor.vertices, floor.triangles);
-    let first = vertices.len() as u32;
-    vertices.extend([[5.0, -1.0, -9.0], [5.0, -1.0, 9.0], [5.0, 9.0, 0.0]].map(Vec3::from));
-    triangles.push([first, first + 1, first + 2]);
-    TriMesh::new(vertices, triangles).unwrap()
-}
-
 fn still() -> NonlinearRigidMotion {
     NonlinearRigidMotion::identity()
 }
@@ -179,7 +169,7 @@ fn casts_from_contact_stop_as_their_options_say() {
     let ours = SbbkDispatcher::default();
     let sizes = [0.01, 1.0, 40.0].into_iter();
     for (size, is_mesh_first) in sizes.flat_map(|size| [(size, true), (size, false)]) {
-        let mesh = room(1).scaled(Vec3::splat(size));
+        let mesh = walled(20.0, 1, 5.0).scaled(Vec3::splat(size));
         for (name, other) in blocks(size) {
             let cast = |dispatcher: &dyn QueryDispatcher, velocity: Vec3, stop: bool| {
                 let moving = pushed(0.4 * size * Vec3::Y, velocity * size);
@@ -217,7 +207,7 @@ fn casts_from_contact_stop_as_their_options_say() {
 /// ignored because it was touched at the start.
 #[test]
 fn a_falling_pole_meets_the_floor_with_its_other_end() {
-    let mesh = room(1);
+    let mesh = walled(20.0, 1, 5.0);
     for (name, other) in [
         ("cylinder", SharedShape::cylinder(1.0, 0.1)),
         ("cuboid", SharedShape::cuboid(0.1, 1.0, 0.1)),
@@ -297,7 +287,7 @@ fn a_box_that_turns_above_a_floor_does_not_meet_it() {
 fn bodies_that_glide_along_a_floor_meet_the_wall() {
     let dispatcher = SbbkDispatcher::default();
     for (cells, height) in [(1, 1e-2), (1, 1e-4), (20, 1e-2), (20, 1e-4)] {
-        let mesh = room(cells);
+        let mesh = walled(20.0, cells, 5.0);
         for (name, other) in shapes(1.0).into_iter().filter(|(name, _)| *name != "half-space") {
             let low = other.compute_local_aabb().mins.y;
             let start = Pose3::translation(-3.0, height - low, 0.0);

@@ -1,7 +1,8 @@
-use glamx::{DAffine3, Pose3, Vec3};
+use glamx::{DAffine3, DVec3, Pose3, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
+use rapier3d::parry::bounding_volume::Aabb;
 use rapier3d::parry::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{SharedShape, TriMesh, Triangle};
 use sbbk_testkit::mesh;
@@ -11,11 +12,6 @@ use sbbk_truth::ConvexBody;
 use super::shapes::{pose, shapes};
 use crate::proximity::Proximity;
 use crate::support::{Question, shape};
-
-/// The signed distances of all triangles from a body at a pose.
-pub(super) fn truth(mesh: &TriMesh, body: &ConvexBody, pose: &Pose3) -> Vec<f64> {
-    truth_at(mesh, body, affine(pose).inverse())
-}
 
 /// Signed distances with the mesh at a place in the frame of the body.
 pub(super) fn truth_at(mesh: &TriMesh, body: &ConvexBody, pose: DAffine3) -> Vec<f64> {
@@ -28,8 +24,17 @@ pub(super) fn truth_of(triangle: &Triangle, body: &ConvexBody, pose: DAffine3) -
     body.distance(&triangle.vertices().each_ref().map(place))
 }
 
-pub(super) fn least(distances: &[f64]) -> f64 {
-    distances.iter().copied().fold(f64::INFINITY, f64::min)
+/// The least signed distance of a triangle from a body in the box `around`. Triangles whose own boxes are
+/// farther than the nearest triangle so far are left out.
+pub(super) fn least_at(mesh: &TriMesh, body: &ConvexBody, around: &Aabb, pose: DAffine3) -> f64 {
+    let [low, high] = [around.mins, around.maxs].map(|end| end.as_dvec3());
+    // The box is rounded to f32.
+    let slack = 1.0e-3 * (high - low).max_element();
+    mesh.triangles().fold(f64::INFINITY, |least, triangle| {
+        let [a, b, c] = triangle.vertices().map(|corner| pose.transform_point3(corner.as_dvec3()));
+        let gap = (a.min(b).min(c) - high).max(low - a.max(b).max(c)).max(DVec3::ZERO);
+        if gap.length() - slack > least { least } else { least.min(body.distance(&[a, b, c])) }
+    })
 }
 
 /// Would catch a wrong order or frame, triangles left out by a bound, a missing radius, and errors
@@ -50,8 +55,8 @@ fn as_brute_force_says_at_every_size() {
                 let is_mesh_first = i % 2 == 0;
                 let question = Question::new(&mesh, &*other, in_mesh).flipped(!is_mesh_first);
                 let ([g1, g2], pos12) = (question.host_shapes(), question.pos12());
-                let distances = truth(&mesh, &body, &in_mesh);
-                let least = least(&distances);
+                let distances = truth_at(&mesh, &body, affine(&in_mesh).inverse());
+                let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
                 let of_mesh = |[one, two]: [u32; 2]| {
                     let [triangle, part] = if is_mesh_first { [one, two] } else { [two, one] };
                     assert_eq!(part, 0, "{name}, {size}, {i}");
