@@ -4,24 +4,17 @@ use std::thread;
 use glamx::Vec3;
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
+use crate::edited_mesh::{beside, torus};
 use crate::heightfield::terrain::Terrain;
 use crate::soft_pairs::question::furniture;
-use crate::support::{Pair, Question, assert_same, counting, deform, shape, shape_with};
+use crate::support::{Pair, Question, assert_same, counting, deform, shape_with};
 
 fn soft_ball() -> TriMesh {
     shape_with(&mesh::ball(1.0, 5), TriMeshFlags::DEFORMABLE)
-}
-
-fn torus() -> TriMesh {
-    shape(&mesh::torus(1.0, 0.4, 24, 12))
-}
-
-fn beside() -> Pose {
-    Pose::from_parts(Vector::new(1.5, 0.4, 0.2), glamx::Quat::from_rotation_x(1.0))
 }
 
 /// Would catch one mesh taken for the other.

@@ -10,11 +10,13 @@ use crate::support::{
     Manifold, Pair, Question, assert_same, distance, every, sequence, shape, triangles,
 };
 
-fn torus() -> TriMesh {
+/// A ring of 576 triangles.
+pub fn torus() -> TriMesh {
     shape(&mesh::torus(1.0, 0.4, 24, 12))
 }
 
-fn beside() -> Pose {
+/// A pose at which two such rings overlap.
+pub fn beside() -> Pose {
     Pose::from_parts(Vector::new(1.5, 0.4, 0.2), glamx::Quat::from_rotation_x(1.0))
 }
 

@@ -10,11 +10,12 @@ use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{ContactManifold, QueryDispatcher, TrackedContact};
-use rapier3d::parry::shape::{HeightField, PackedFeatureId, Shape, SharedShape, TriMeshFlags};
+use rapier3d::parry::shape::{PackedFeatureId, Shape, SharedShape, TriMeshFlags};
 use sbbk_testkit::mesh::{self, Mesh};
 
+use crate::heightfield::terrain::rolling;
 use crate::support::{
-    Pair, Question, direction, distance, nudge, rotation, shape, shape_with, with,
+    Pair, Question, assert_bits, direction, distance, nudge, rotation, shape, shape_with, with,
 };
 use crate::worlds::on_ground;
 
@@ -110,27 +111,6 @@ fn assert_stand_for(
     [patches.len(), every.len()]
 }
 
-/// All that a host sees of manifolds.
-fn bare(manifolds: &[Manifold]) -> String {
-    let points = |m: &Manifold| {
-        let all = m.points.iter().map(|p| (p.local_p1, p.local_p2, p.dist, p.fid1, p.fid2));
-        all.collect::<Vec<_>>()
-    };
-    let all =
-        manifolds.iter().map(|m| (m.subshape1, m.subshape2, m.local_n1, m.local_n2, points(m)));
-    format!("{:?}", all.collect::<Vec<_>>())
-}
-
-/// A grid of hills, as a shape.
-fn field() -> SharedShape {
-    let heights = rapier3d::parry::utils::Array2::new(
-        9,
-        9,
-        (0..81).map(|i| 0.1 * (i as f32).sin()).collect(),
-    );
-    SharedShape::new(HeightField::new(heights, Vec3::new(4.0, 1.0, 4.0)))
-}
-
 /// Shapes that meet the mesh, each about 2 units across.
 fn partners() -> Vec<(&'static str, SharedShape)> {
     let part = |x: Real| (Pose::translation(x, 0.0, 0.0), SharedShape::cuboid(0.3, 0.5, 0.4));
@@ -146,7 +126,7 @@ fn partners() -> Vec<(&'static str, SharedShape)> {
         ("cylinder", SharedShape::cylinder(0.6, 0.5)),
         ("half-space", SharedShape::halfspace(Vec3::Y)),
         ("compound", SharedShape::compound(vec![part(-0.6), part(0.6)])),
-        ("field", field()),
+        ("field", SharedShape::new(rolling(4.0, 8, 0.1))),
     ]
 }
 
@@ -179,7 +159,7 @@ fn patches_stand_for_every_contact() {
                         assert_stand_for(&found, &expected, &question.pos12(), prediction, &what);
                     counts = [counts[0] + count[0], counts[1] + count[1]];
                     pair.ask(&patches, &question);
-                    assert_eq!(bare(&pair.manifolds), bare(&found), "{what}: memory");
+                    assert_bits(&pair.manifolds, &found, &format!("{what}: memory"));
                 }
             }
         }

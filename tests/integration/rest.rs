@@ -6,35 +6,22 @@ use rapier3d::math::{Real, Vector};
 use sbbk_testkit::mesh;
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
 
-use crate::support::declare_solid;
 use crate::worlds::{after, lowest, on_ground};
 
-/// One world under stock Rapier, and again under SBBK.
-struct Both {
-    stock: SceneWorld,
-    sbbk: SceneWorld,
+/// Runs a scene for some steps.
+fn step(scene: &mut SceneWorld, steps: usize) {
+    (0..steps).for_each(|_| scene.world.step());
 }
 
-impl Both {
-    fn new(build: impl Fn() -> SceneWorld) -> Self {
-        let mut sbbk = build();
-        sbbk.world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-        Self { stock: build(), sbbk }
-    }
+/// The same scene with SBBK.
+fn with_sbbk(mut scene: SceneWorld) -> SceneWorld {
+    scene.world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+    scene
+}
 
-    fn step(&mut self, steps: usize) {
-        for _ in 0..steps {
-            self.stock.world.step();
-            self.sbbk.world.step();
-        }
-    }
-
-    /// The bodies that the scene is about, as stock and as SBBK have moved them.
-    fn bodies(&self) -> impl Iterator<Item = [&RigidBody; 2]> {
-        let pairs = self.stock.watched.iter().zip(&self.sbbk.watched);
-        pairs
-            .map(|(&stock, &sbbk)| [&self.stock.world.bodies[stock], &self.sbbk.world.bodies[sbbk]])
-    }
+/// The bodies that a scene is about.
+fn bodies(scene: &SceneWorld) -> impl Iterator<Item = &RigidBody> {
+    scene.watched.iter().map(|&body| &scene.world.bodies[body])
 }
 
 /// Panics unless two bodies are at the same place, up to `distance` units and `angle` radians.
@@ -55,19 +42,21 @@ fn speed(body: &RigidBody) -> Real {
 /// Rapier's default, as stacks of meshes collapse under stock without it.
 #[test]
 fn a_stack_of_ten_boxes_stands_for_a_minute() {
-    let mut both = Both::new(|| {
+    let awake = || {
         let mut scene = BoxStack.build();
         for &body in &scene.watched {
             scene.world.bodies[body].activation_mut().normalized_linear_threshold = -1.0;
         }
         scene
-    });
-    both.step(600);
-    let early: Vec<Vector> = both.bodies().map(|[_, sbbk]| sbbk.translation()).collect();
-    both.step(3000);
-    for ((index, bodies), early) in both.bodies().enumerate().zip(early) {
-        assert_at_same_place(bodies, 5e-4, 1e-3);
-        let [_, sbbk] = bodies;
+    };
+    let (mut stock, mut sbbk) = (awake(), with_sbbk(awake()));
+    step(&mut stock, 3600);
+    step(&mut sbbk, 600);
+    let early: Vec<Vector> = bodies(&sbbk).map(RigidBody::translation).collect();
+    step(&mut sbbk, 3000);
+    let pairs = bodies(&stock).zip(bodies(&sbbk)).zip(early);
+    for (index, ((stock, sbbk), early)) in pairs.enumerate() {
+        assert_at_same_place([stock, sbbk], 5e-4, 1e-3);
         assert!(!sbbk.is_sleeping() && speed(sbbk) < 2e-4, "box {index}: {}", speed(sbbk));
         let crept = (sbbk.translation() - early).length();
         assert!(crept < 2e-4, "box {index} has crept by {crept}");
@@ -81,9 +70,10 @@ fn a_stack_of_ten_boxes_stands_for_a_minute() {
 /// let it sink or roll on its back.
 #[test]
 fn a_head_that_nothing_holds_tips_over_and_rests() {
-    let mut both = Both::new(|| HeadOnSlope { angle: 0.0 }.build());
-    both.step(1000);
-    let [stock, sbbk] = both.bodies().next().expect("one head");
+    let scene = HeadOnSlope { angle: 0.0 };
+    let mut scenes = [scene.build(), with_sbbk(scene.build())];
+    scenes.iter_mut().for_each(|scene| step(scene, 1000));
+    let [stock, sbbk] = scenes.each_ref().map(|scene| bodies(scene).next().expect("one head"));
     let turned = |body: &RigidBody| 2.0 * body.rotation().xyz().length().asin();
     assert!(turned(stock) < 0.02 && turned(sbbk) > 1.0);
     assert_eq!(speed(sbbk), 0.0, "at rest");
@@ -96,23 +86,9 @@ fn a_head_that_nothing_holds_tips_over_and_rests() {
 fn a_head_rests_on_a_slope_by_its_surface() {
     for degrees in [10.0, 14.0] {
         let scene = HeadOnSlope { angle: Real::to_radians(degrees) };
-        let mut both = Both::new(|| scene.build());
-        both.step(1200);
-        both.bodies().for_each(|[_, sbbk]| assert_eq!(speed(sbbk), 0.0, "on {degrees} degrees"));
-    }
-}
-
-/// Would catch boxes that stay in a declared solid, with the sides of their triangles at its surface.
-#[test]
-fn boxes_of_many_triangles_come_up_out_of_a_slab() {
-    let solid = |half_extents: Vec3| ColliderBuilder::new(mesh::cuboid(half_extents, 8).shape());
-    for depth in [0.22, 0.83, 0.95] {
-        let (dispatcher, slab) = (SbbkDispatcher::default(), solid(Vec3::new(5.0, 1.0, 5.0)));
-        let _solid = declare_solid(&dispatcher, slab.shape.as_trimesh().unwrap());
-        let world = on_ground(slab.translation(-Vec3::Y), dispatcher);
-        let body = RigidBodyBuilder::dynamic().translation((0.5 - depth) * Vec3::Y);
-        let height = after(180, world, body, solid(Vec3::splat(0.5))).translation().y;
-        assert!((height - 0.5).abs() < 0.02, "from {depth} to {height}");
+        let mut sbbk = with_sbbk(scene.build());
+        step(&mut sbbk, 1200);
+        bodies(&sbbk).for_each(|head| assert_eq!(speed(head), 0.0, "on {degrees} degrees"));
     }
 }
 

@@ -1,35 +1,18 @@
-use rapier3d::geometry::{Collider, ContactPair};
-use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::scene::{HelicopterBallDrop, MonkeyPile, Scene};
 
 use crate::support::{Question, per_triangle};
 use crate::truth::Tally;
 
-/// A pair of meshes as Rapier asks about it at the start of a step.
-struct Asked {
-    colliders: [Collider; 2],
-    prediction: Real,
-}
-
-impl Asked {
-    fn query(&self) -> Question<'_> {
-        let [one, two] = &self.colliders;
-        let [mesh1, mesh2] = [one, two].map(|c| c.shape().as_trimesh().expect("a mesh"));
-        let pos12 = one.position().inv_mul(two.position());
-        Question::new(mesh1, mesh2, pos12).within(self.prediction)
-    }
-}
-
 /// The pairs of meshes that the broad phase has proposed, at their present poses.
-fn mesh_pairs(world: &PhysicsWorld) -> Vec<Asked> {
-    let asked = |pair: &ContactPair| {
-        let colliders = [pair.collider1, pair.collider2].map(|c| world.colliders[c].clone());
-        let prediction = world.integration_parameters.prediction_distance();
-        let are_meshes = colliders.iter().all(|c| c.shape().as_trimesh().is_some());
-        are_meshes.then_some(Asked { colliders, prediction })
-    };
-    world.contact_pairs().filter_map(asked).collect()
+fn mesh_pairs(world: &PhysicsWorld) -> impl Iterator<Item = Question<'_>> {
+    let prediction = world.integration_parameters.prediction_distance();
+    world.contact_pairs().filter_map(move |pair| {
+        let [one, two] = [pair.collider1, pair.collider2].map(|handle| &world.colliders[handle]);
+        let (mesh1, mesh2) = (one.shape().as_trimesh()?, two.shape().as_trimesh()?);
+        let pos12 = one.position().inv_mul(two.position());
+        Some(Question::new(mesh1, mesh2, pos12).within(prediction))
+    })
 }
 
 fn scenes(contact_recycling: bool) -> [(Box<dyn Scene>, [usize; 4]); 2] {
@@ -50,8 +33,7 @@ fn contacts_in_stocks_scenes_are_the_truths() {
         let mut tally = Tally::default();
         for step in 0..=looks[3] {
             if looks.contains(&step) {
-                for asked in mesh_pairs(&world).iter().step_by(3) {
-                    let query = asked.query();
+                for query in mesh_pairs(&world).step_by(3) {
                     tally.add(&query, &query.fresh(&dispatcher));
                 }
             }

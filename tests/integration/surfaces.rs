@@ -23,11 +23,6 @@ fn cube() -> TriMesh {
     shape(&mesh::cuboid(Vec3::splat(0.5), 1))
 }
 
-/// Places of the points of manifolds in frame 1.
-fn points(manifolds: &[Manifold]) -> impl Iterator<Item = Vector> {
-    manifolds.iter().flat_map(|manifold| manifold.points.iter().map(|point| point.local_p1))
-}
-
 /// Panics unless all contacts point one way, up to `sine`, and there are some.
 fn assert_along(manifolds: &[Manifold], direction: Vector, sine: Real) {
     assert!(!manifolds.is_empty(), "no contacts");
@@ -48,8 +43,10 @@ fn a_cube_that_has_sunk_a_little_is_pushed_up() {
         assert_along(&found, Vector::Y, 1e-6);
         for corner in [[x - 0.5, z - 0.5], [x - 0.5, 0.5], [0.5, z - 0.5], [0.5, 0.5]] {
             let [x, z] = corner;
-            let away = |p: Vector| (p - Vector::new(x, p.y, z)).length();
-            let nearest = points(&found).map(away).fold(Real::INFINITY, Real::min);
+            let points = found.iter().flat_map(|manifold| &manifold.points);
+            let away =
+                points.map(|point| (point.local_p1 - Vector::new(x, point.local_p1.y, z)).length());
+            let nearest = away.fold(Real::INFINITY, Real::min);
             assert!(nearest < 1e-4, "the nearest to {corner:?} is {nearest} away, sunk by {sunk}");
         }
         for manifold in &found {

@@ -23,12 +23,6 @@ pub fn normalized(pose: &Pose3) -> DPose3 {
     DPose3::from_parts(pose.translation.as_dvec3(), pose.rotation.as_dquat().normalize())
 }
 
-/// Every pair of triangles at a distance of at most `margin`.
-pub fn pairs_within(query: &Question, margin: f64) -> BTreeMap<TrianglePair, TruthPair> {
-    let pairs = of_meshes(query.meshes(), DPose3::from(query.pos12()), margin);
-    pairs.into_iter().map(|pair| ([pair.triangle1, pair.triangle2], pair)).collect()
-}
-
 /// Counts of contacts and of errors.
 #[derive(Debug, Default, PartialEq)]
 pub struct Tally {
@@ -43,7 +37,9 @@ impl Tally {
     /// Judges a fresh answer.
     pub fn add<M, C>(&mut self, query: &Question, found: &[ContactManifold<M, C>]) {
         let prediction = f64::from(query.prediction);
-        let truth = pairs_within(query, 1.01 * prediction);
+        let truth = of_meshes(query.meshes(), DPose3::from(query.pos12()), 1.01 * prediction);
+        let truth: BTreeMap<TrianglePair, TruthPair> =
+            truth.into_iter().map(|pair| ([pair.triangle1, pair.triangle2], pair)).collect();
         let found = by_triangles(found);
         for (pair, manifold) in &found {
             let Some(truth) = truth.get(pair) else {

@@ -10,13 +10,8 @@ use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Pair, Question, SETS, every, having, per_triangle, rotation, shape, touching,
+    Pair, Question, SETS, assert_bits, every, having, per_triangle, rotation, shape, touching,
 };
-
-/// Every bit of manifolds, and their order.
-fn bits(manifolds: &[Manifold]) -> String {
-    format!("{manifolds:?}")
-}
 
 /// 9600 triangles, four units across.
 fn large(flags: TriMeshFlags) -> SharedShape {
@@ -52,7 +47,7 @@ fn contacts_without_trees_are_those_with_trees() {
             let query = Question::new(one, two, pose).within([0.002, 0.02, 0.1][i % 3]);
             for query in [query, query.flipped(true)] {
                 let [found, expected] = [&walking, &prepared].map(|d| query.fresh(d));
-                assert_eq!(bits(&found), bits(&expected), "{i}");
+                assert_bits(&found, &expected, &format!("{i}"));
                 count += found.len();
             }
         }
@@ -75,7 +70,7 @@ fn a_registered_shape_is_known_until_it_is_let_go() {
         let query = Question::new(as_mesh(ring), as_mesh(&head), pose);
         let before = dispatcher.stats().internals.walks;
         let found = query.fresh(&dispatcher);
-        assert_eq!(bits(&found), bits(&query.fresh(&per_triangle())));
+        assert_bits(&found, &query.fresh(&per_triangle()), "registered or not");
         (found.len(), dispatcher.stats().internals.walks - before)
     };
     let _tree_of_head = dispatcher.prepare_shape(&head).unwrap();
@@ -133,7 +128,7 @@ fn meshes_that_land_together_are_not_all_built_at_once() {
     for (pair, meshes) in pairs.iter().zip(meshes.windows(2)) {
         let pose = Pose::translation(0.0, 0.03, 0.0) * pose;
         let query = Question::new(&meshes[0], &meshes[1], pose);
-        assert_eq!(bits(&pair.manifolds), bits(&query.fresh(&SbbkDispatcher::default())));
+        assert_bits(&pair.manifolds, &query.fresh(&SbbkDispatcher::default()), "built later");
     }
 }
 
@@ -211,7 +206,7 @@ fn large_meshes_have_the_contacts_of_registered_ones() {
             let turn = Quat::from_rotation_y(0.3);
             let query = Question::new(ground, &cube, Pose::from_parts(place, turn));
             let [found, expected] = [&unaware, &knowing].map(|of| query.fresh(of));
-            assert_eq!(bits(&found), bits(&expected), "{cells} cells, {place}");
+            assert_bits(&found, &expected, &format!("{cells} cells, {place}"));
         }
     }
 }
@@ -230,8 +225,8 @@ fn large_meshes_are_solids_to_each_other() {
         let query = Question::new(ground, ground, Pose::from_parts(sunk, turn));
         let expected = query.fresh(&knowing);
         assert!(!expected.is_empty());
-        assert_eq!(bits(&query.fresh(&unaware)), bits(&expected), "{step}");
-        assert_eq!(bits(&pair.ask(&unaware, &query).manifolds), bits(&expected), "{step}");
+        assert_bits(&query.fresh(&unaware), &expected, &format!("{step}"));
+        assert_bits(&pair.ask(&unaware, &query).manifolds, &expected, &format!("{step}"));
     }
     assert_eq!((unaware.stats().solids, unaware.stats().trees), (1, 0));
 }

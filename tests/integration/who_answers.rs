@@ -4,14 +4,13 @@ use rapier3d::control::KinematicCharacterController;
 use rapier3d::math::Pose;
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher};
-use rapier3d::parry::shape::{
-    HeightField, Polyline, PolylineFlags, Shape, SharedShape, TriMesh, TriMeshFlags,
-};
-use rapier3d::parry::utils::Array2;
+use rapier3d::parry::shape::{Polyline, PolylineFlags, Shape, SharedShape, TriMesh, TriMeshFlags};
 use rapier3d::pipeline::QueryFilter;
 use rapier3d::prelude::ColliderBuilder;
 use sbbk_testkit::mesh;
 
+use crate::convex::shapes::shapes;
+use crate::heightfield::terrain::rolling;
 use crate::support::{Question, assert_bits, counting, counting_patches, shape, shape_with, with};
 use crate::worlds::on_ground;
 
@@ -22,48 +21,29 @@ pub enum Who {
     Parry,
 }
 
-fn field() -> SharedShape {
-    let heights = Array2::from_fn(5, 5, |i, j| 0.1 * ((i * j) % 3) as f32);
-    SharedShape::new(HeightField::new(heights, Vec3::new(4.0, 1.0, 4.0)))
-}
-
 /// Shapes that a mesh can meet, and who computes their contacts.
 pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     use Who::{Parry, Sbbk};
-    let [a, b, c] = [Vec3::X, Vec3::Y, Vec3::Z];
     let ball = mesh::ball(0.7, 3);
-    let hull = SharedShape::convex_hull(&ball.vertices).expect("a ball has a hull");
-    let round_hull = SharedShape::round_convex_hull(&ball.vertices, 0.1).expect("as above");
+    let field = SharedShape::new(rolling(4.0, 4, 0.1));
     let part = |shape: SharedShape| vec![(Pose::translation(0.1, 0.0, 0.0), shape)];
     let soft = shape_with(&ball, TriMeshFlags::DEFORMABLE);
     // The whole pair is stock's, not half of it.
-    let with_field = [part(field()), part(SharedShape::ball(0.5))].concat();
-    let line = vec![-a, a, b];
+    let with_field = [part(field.clone()), part(SharedShape::ball(0.5))].concat();
+    let line = vec![-Vec3::X, Vec3::X, Vec3::Y];
     let soft_line = Polyline::with_flags(line.clone(), None, PolylineFlags::DEFORMABLE);
-    vec![
+    let convex = shapes(1.0).into_iter().map(|(name, shape)| (name, shape, Sbbk));
+    let others = [
         ("mesh", ball.shape(), Sbbk),
         ("deformable mesh", SharedShape::new(soft), Sbbk),
-        ("ball", SharedShape::ball(0.5), Sbbk),
-        ("cuboid", SharedShape::cuboid(0.5, 0.4, 0.6), Sbbk),
-        ("capsule", SharedShape::capsule_y(0.4, 0.2), Sbbk),
-        ("segment", SharedShape::segment(a, b), Sbbk),
-        ("triangle", SharedShape::triangle(a, b, c), Sbbk),
-        ("cylinder", SharedShape::cylinder(0.4, 0.3), Sbbk),
-        ("cone", SharedShape::cone(0.4, 0.3), Sbbk),
-        ("convex polyhedron", hull, Sbbk),
-        ("round cuboid", SharedShape::round_cuboid(0.5, 0.4, 0.6, 0.1), Sbbk),
-        ("round triangle", SharedShape::round_triangle(a, b, c, 0.1), Sbbk),
-        ("round cylinder", SharedShape::round_cylinder(0.4, 0.3, 0.1), Sbbk),
-        ("round cone", SharedShape::round_cone(0.4, 0.3, 0.1), Sbbk),
-        ("round convex polyhedron", round_hull, Sbbk),
-        ("half-space", SharedShape::halfspace(Vec3::Y), Sbbk),
-        ("height field", field(), Sbbk),
+        ("height field", field, Sbbk),
         ("compound", SharedShape::compound(part(SharedShape::ball(0.5))), Sbbk),
         ("compound with another kind", SharedShape::compound(with_field), Parry),
-        ("polyline", SharedShape::polyline(line.clone(), None), Sbbk),
+        ("polyline", SharedShape::polyline(line, None), Sbbk),
         ("deformable polyline", SharedShape::new(soft_line), Parry),
         ("voxels", SharedShape::voxels_from_points(Vec3::splat(0.3), &ball.vertices), Parry),
-    ]
+    ];
+    convex.chain(others).collect()
 }
 
 /// Would catch a kind that is computed otherwise than the documentation says, and a forgotten

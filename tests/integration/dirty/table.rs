@@ -31,24 +31,10 @@ pub(super) fn judge(title: &str, cases: &[Case], known: &[(&str, &str)]) {
         .iter()
         .flat_map(|&(row, columns)| columns.split(", ").map(move |column| (row, column)))
         .collect();
-    let fresh = list(wrong.difference(&known));
-    let mended = list(known.difference(&wrong));
-    assert!(fresh.is_empty(), "{title}: these fail:\n{fresh}and these are mended:\n{mended}");
-    assert!(mended.is_empty(), "{title}: mended, take them from the list:\n{mended}");
-}
-
-/// Rows as they are in the lists.
-fn list<'a>(cases: impl Iterator<Item = &'a (&'a str, &'a str)>) -> String {
-    let mut rows: Vec<(&str, Vec<&str>)> = Vec::new();
-    for &(row, column) in cases {
-        match rows.last_mut() {
-            Some((last, columns)) if *last == row => columns.push(column),
-            _ => rows.push((row, vec![column])),
-        }
-    }
-    let line =
-        |(row, columns): (&str, Vec<&str>)| format!("    ({row:?}, {:?}),\n", columns.join(", "));
-    rows.into_iter().map(line).collect()
+    let [fresh, mended] = [wrong.difference(&known), known.difference(&wrong)];
+    let [fresh, mended] = [fresh, mended].map(|cases| cases.collect::<Vec<_>>());
+    assert!(fresh.is_empty(), "{title}: these fail: {fresh:#?}, and these are mended: {mended:#?}");
+    assert!(mended.is_empty(), "{title}: mended, take them from the list: {mended:#?}");
 }
 
 fn table(title: &str, cases: &[&Case]) -> String {

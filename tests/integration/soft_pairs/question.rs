@@ -14,14 +14,12 @@ pub fn anew(question: &Question) -> Vec<Manifold> {
 
 /// Panics unless both have the same manifolds, in any order, bit for bit up to the sign of a zero.
 pub fn assert_same_set(found: &[Manifold], expected: &[Manifold]) {
-    assert_same(&sorted(found), &sorted(expected), 0.0);
-}
-
-/// By triangles.
-pub fn sorted(manifolds: &[Manifold]) -> Vec<Manifold> {
-    let mut manifolds = manifolds.to_vec();
-    manifolds.sort_by_key(triangles);
-    manifolds
+    let [found, expected] = [found, expected].map(|manifolds| {
+        let mut sorted = manifolds.to_vec();
+        sorted.sort_by_key(triangles);
+        sorted
+    });
+    assert_same(&found, &expected, 0.0);
 }
 
 /// A floor of boxes, with balls and a bar on it.
