@@ -3,7 +3,7 @@
 use crate::prelude::*;
 use std::error::Error;
 use std::fmt::{self, Debug, Display};
-use std::io::{self, ErrorKind, Write};
+use std::io::{ErrorKind, Write};
 
 use clap::{CommandFactory, FromArgMatches, Parser};
 
@@ -29,7 +29,7 @@ impl StudyArguments {
     /// Runs a study, prints the verdict and the tables, and writes the file.
     ///
     /// Returns the errors of the study. A file that cannot be written is an error before the study starts.
-    pub fn run(&self, study: impl FnOnce(&Progress) -> Result<Results, FileError>) -> Outcome {
+    pub fn run(&self, study: impl FnOnce(&Progress) -> io::Result<Results>) -> Outcome {
         if let Some(path) = &self.csv {
             check_output(path)?;
         }

@@ -1,20 +1,10 @@
-//! The error of studies.
+//! Errors of files.
 
-use std::path::{Path, PathBuf};
+use std::fmt::Display;
+use std::io;
+use std::path::Path;
 
-use thiserror::Error;
-
-/// A file could not be read or written. The message names the file and the fault.
-#[derive(Debug, Error)]
-#[error("cannot {task} {}: {cause}", path.display())]
-pub struct FileError {
-    task: &'static str,
-    path: PathBuf,
-    cause: String,
-}
-
-impl FileError {
-    pub(crate) fn new(task: &'static str, path: &Path, cause: impl ToString) -> Self {
-        Self { task, path: path.to_owned(), cause: cause.to_string() }
-    }
+/// Says what could not be done with a file, and why.
+pub(crate) fn file_error(task: &str, path: &Path, cause: impl Display) -> io::Error {
+    io::Error::other(format!("cannot {task} {}: {cause}", path.display()))
 }

@@ -20,5 +20,4 @@ pub mod replay;
 pub mod report;
 pub mod study;
 
-pub use error::FileError;
 pub use sbbk_testkit::{mesh, scene};

@@ -6,7 +6,7 @@ use std::{fs, io};
 use glamx::Vec3;
 use mesh_loader::Loader;
 
-use crate::error::FileError;
+use crate::error::file_error;
 use crate::mesh::Mesh;
 
 /// Loads an `.obj` or `.stl` file as one welded mesh in the file's own units, named after the file.
@@ -14,8 +14,8 @@ use crate::mesh::Mesh;
 ///
 /// Errors: the file cannot be read, or its extension or contents make no sense. A coordinate is not
 /// finite, or there are no triangles.
-pub fn load(path: &Path) -> Result<Mesh, FileError> {
-    read(path).map_err(|cause| FileError::new("load the mesh", path, cause))
+pub fn load(path: &Path) -> io::Result<Mesh> {
+    read(path).map_err(|cause| file_error("load the mesh", path, cause))
 }
 
 fn read(path: &Path) -> Result<Mesh, String> {

@@ -1,7 +1,7 @@
 //! Names that most modules use.
 
 pub(crate) use crate::backend::{Backend, Dispatcher, Memory};
-pub(crate) use crate::error::FileError;
+pub(crate) use crate::error::file_error;
 pub(crate) use crate::mesh;
 pub(crate) use crate::mesh::Mesh;
 pub(crate) use crate::metrics::{
@@ -25,5 +25,6 @@ pub(crate) use rapier3d::pipeline::PhysicsWorld;
 pub(crate) use sbbk_testkit::probe::{SharedDispatcher, shape_address};
 pub(crate) use serde::Serialize;
 pub(crate) use std::collections::HashMap;
+pub(crate) use std::io;
 pub(crate) use std::path::{Path, PathBuf};
 pub(crate) use std::time::{Duration, Instant};

@@ -11,7 +11,7 @@
 //!
 //! let pile = MonkeyPile::with_heads(8);
 //! replay::play("page.html".as_ref(), &pile, &[Backend::Stock, Backend::Sbbk], 120, &Progress::hidden())?;
-//! # Ok::<(), sbbk_lab::FileError>(())
+//! # Ok::<(), std::io::Error>(())
 //! ```
 
 use crate::prelude::*;
@@ -36,7 +36,7 @@ pub fn play(
     backends: &[Backend],
     steps: usize,
     progress: &Progress,
-) -> Result<(), FileError> {
+) -> io::Result<()> {
     let start = |&backend: &Backend| {
         let SceneWorld { mut world, .. } = scene.build();
         let (dispatcher, _) = backend.install(&mut world);
@@ -55,7 +55,7 @@ pub fn play(
 /// Writes the runs of one scene, the first beside the others, into a page.
 ///
 /// Errors: the file cannot be written.
-pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> Result<(), FileError> {
+pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> io::Result<()> {
     write_file(path, page(title, runs))
 }
 

@@ -1,25 +1,26 @@
 //! Result files.
 
 use std::fs::{self, OpenOptions};
+use std::io;
 use std::path::Path;
 
 use super::environment::said_by;
 use super::{Results, Row};
-use crate::error::FileError;
+use crate::error::file_error;
 
 /// Checks before a measurement that its output can be written after it.
 ///
 /// Errors: the file cannot be written; the message names it.
-pub fn check_output(path: &Path) -> Result<(), FileError> {
+pub fn check_output(path: &Path) -> io::Result<()> {
     let file = OpenOptions::new().create(true).append(true).open(path);
-    file.map(drop).map_err(|cause| FileError::new("write", path, cause))
+    file.map(drop).map_err(|cause| file_error("write", path, cause))
 }
 
 /// Writes a file.
 ///
 /// Errors: the file cannot be written; the message names it.
-pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), FileError> {
-    fs::write(path, contents).map_err(|cause| FileError::new("write", path, cause))
+pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> io::Result<()> {
+    fs::write(path, contents).map_err(|cause| file_error("write", path, cause))
 }
 
 impl Results {

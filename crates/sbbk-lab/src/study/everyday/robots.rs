@@ -78,10 +78,10 @@ fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
 }
 
 /// Loads a robot with meshes of its own.
-fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> Result<UrdfRobot, FileError> {
+fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> io::Result<UrdfRobot> {
     let options = UrdfLoaderOptions { trimesh_flags, shift, ..UrdfLoaderOptions::default() };
     let loaded = UrdfRobot::from_file(file, options, None);
-    loaded.map(|(robot, _)| robot).map_err(|cause| FileError::new("load the robot", file, cause))
+    loaded.map(|(robot, _)| robot).map_err(|cause| file_error("load the robot", file, cause))
 }
 
 /// Joints of a leg, and its phase in a stride.
@@ -127,7 +127,7 @@ impl Subject {
     /// Loads a mesh, or the robot of a URDF file.
     ///
     /// Errors: the file cannot be loaded, or its robot has no shapes.
-    pub fn load(file: &Path) -> Result<Self, FileError> {
+    pub fn load(file: &Path) -> io::Result<Self> {
         match file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf")) {
             true => Self::robot(file),
             false => Ok(Self::mesh(&mesh_file::load(file)?)),
@@ -145,10 +145,10 @@ impl Subject {
     }
 
     /// Loads a robot without flags of meshes, upright, with all links free.
-    fn robot(file: &Path) -> Result<Self, FileError> {
+    fn robot(file: &Path) -> io::Result<Self> {
         let mut robot = load(file, TriMeshFlags::empty(), Pose3::from_rotation(upright()))?;
         let bounds = around(&parts(&robot), &Pose3::IDENTITY).ok_or_else(|| {
-            FileError::new("load the robot", file, "no link has a shape that can collide")
+            file_error("load the robot", file, "no link has a shape that can collide")
         })?;
         robot.append_transform(&Pose3::from_translation(-bounds.center()));
         for link in &mut robot.links {

@@ -4,7 +4,7 @@
 use crate::prelude::*;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::ops::Range;
 
 use glamx::DQuat;
@@ -98,7 +98,7 @@ impl EnginePile {
     /// Errors: the file cannot be read, or has another format.
     pub fn read(path: &Path) -> io::Result<Self> {
         Self::from_numbers(Numbers(read_numbers(path)?.into_iter()))
-            .ok_or_else(|| invalid(format!("{} breaks off", path.display())))
+            .ok_or_else(|| io::Error::other(format!("{} breaks off", path.display())))
     }
 
     fn from_numbers(mut numbers: Numbers) -> Option<Self> {
@@ -158,7 +158,7 @@ impl EnginePile {
             let is_alike =
                 |run: &Run| (0..STEPS).all(|step| run.heads(step).eq(runs[0].heads(step)));
             if !runs.iter().all(is_alike) {
-                return Err(invalid(format!("runs of {engine} differ")));
+                return Err(io::Error::other(format!("runs of {engine} differ")));
             }
             let figures = self.figures(runs, &depths);
             rows.extend(figures.into_iter().map(|(figure, value)| {
@@ -173,7 +173,7 @@ impl EnginePile {
         let step_size = HEADER + STATE * self.poses.len();
         match numbers.len() == STEPS * step_size {
             true => Ok(Run { numbers, step_size }),
-            false => Err(invalid(format!(
+            false => Err(io::Error::other(format!(
                 "{}: not {STEPS} steps of {step_size} numbers",
                 path.display()
             ))),
@@ -332,10 +332,6 @@ impl Numbers {
         let [count] = self.take()?;
         (0..count as usize).map(|_| self.take().map(&make)).collect()
     }
-}
-
-fn invalid(text: String) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, text)
 }
 
 /// Memory of this process in MiB on Linux; else 0.

@@ -140,7 +140,7 @@ fn trials(group: Group, mesh: Option<&Mesh>) -> Vec<Trial> {
 /// Runs all scenes of the plan.
 ///
 /// Errors: the page cannot be written.
-pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, FileError> {
+pub fn hard(plan: &HardPlan, progress: &Progress) -> io::Result<Results> {
     let mut runs = Vec::new();
     for group in &plan.groups {
         let is_timed = matches!(group, Group::Pile | Group::Tray);
@@ -174,7 +174,7 @@ fn run_all(
     settings: &Settings,
     threads: usize,
     progress: &Progress,
-) -> Result<(), FileError> {
+) -> io::Result<()> {
     let Settings { columns, replay, .. } = settings;
     let page = replay.as_deref().filter(|_| runs.is_empty()).zip(trials.first());
     let of = |trial| columns.iter().map(move |&column| (trial, column));

@@ -110,7 +110,7 @@ impl RandomPlan {
 /// Runs all scenes of the plan.
 ///
 /// Errors: the page cannot be written.
-pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, FileError> {
+pub fn random(plan: &RandomPlan, progress: &Progress) -> io::Result<Results> {
     let mut runs = Vec::new();
     for &family in &plan.families {
         let trials = plan.numbers.clone().map(|number| plan.trial(family, number));
