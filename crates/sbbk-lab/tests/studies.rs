@@ -106,17 +106,13 @@ fn everyday_scenes_touch_and_are_judged() {
     assert_eq!(of("sbbk").filter(is_robot).map(touches).collect::<Vec<_>>(), [false, true]);
 }
 
-fn with_control() -> Settings {
-    Settings::of(&[&Column::USUAL[..], &[Column::Control]].concat())
-}
-
 /// Would catch scenes that no backend could pass, flags that are not set, and runs under the name of
 /// another column.
 #[test]
 fn the_control_passes_and_sheets_hold_plain_meshes() {
     let plan = HardPlan {
         groups: vec![hard::Group::Sunk, hard::Group::Sheets],
-        settings: with_control(),
+        settings: Settings::of(&[Column::StockFlag, Column::Sbbk, Column::Control]),
         mesh: None,
     };
     let results = hard::hard(&plan, &Progress::hidden()).unwrap();
@@ -139,7 +135,8 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
 /// gears and bowls are left out: their hulls have seams. Rapier's shapes drop some parts of grippers.
 #[test]
 fn random_scenes_hold_with_rapiers_own_shapes() {
-    let mut plan = RandomPlan::new(0..2, 1, with_control());
+    let settings = Settings::of(&[Column::Stock, Column::Sbbk, Column::Control]);
+    let mut plan = RandomPlan::new(0..2, 1, settings);
     let without = [Family::Chains, Family::Gears, Family::Bowls, Family::Grippers];
     plan.families.retain(|family| !without.contains(family));
     let results = random(&plan, &Progress::hidden()).unwrap();
