@@ -30,7 +30,7 @@ pub(crate) struct OverlapIslands {
 
 /// Contacts that push the bodies of an island apart.
 #[derive(Copy, Clone, Default)]
-struct Support {
+pub(super) struct Support {
     /// Pairs of triangles.
     pairs: u32,
     /// Reliable contacts among them.
@@ -45,6 +45,8 @@ struct Support {
     sheet_side: DVec3,
     /// True if reliable contacts push off the front and the back of the sheet.
     sides: [bool; 2],
+    /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
+    separation: Option<DVec3>,
 }
 
 /// Number of crossing pairs of an island for which one reliable contact is enough. Higher: bodies deep
@@ -74,6 +76,25 @@ impl IslandWay {
 impl Support {
     fn is_enough(self) -> bool {
         self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
+    }
+
+    /// Returns true if the island has no reliable contact.
+    pub(super) fn is_missing(self) -> bool {
+        self.reliable == 0
+    }
+
+    /// Returns true for the normals of contacts that push neither against the reliable ones, nor through a sheet.
+    pub(super) fn agrees(self, normal: DVec3) -> bool {
+        leads_apart(normal, self.separation)
+            && self.normals.dot(normal) >= 0.0
+            && self.sheet_side.dot(normal) >= 0.0
+            && self.way.is_none_or(|way| way.has(normal))
+    }
+
+    /// Returns a cone around the normals that [`agrees`](Self::agrees) accepts, if the island has a way out.
+    pub(super) fn cone(self) -> Option<DoubleCone> {
+        let way = self.way?;
+        Some(DoubleCone { axis: way.normal, least_square: way.least_cosine().powi(2) })
     }
 }
 
@@ -316,14 +337,10 @@ impl OverlapIslands {
         crossing.is_reliable && !self.rejected.contains(&crossing.pair)
     }
 
-    /// Returns true if the island of a pair has too few reliable contacts.
-    pub(super) fn needs_support(&mut self, pair: [u32; 2]) -> bool {
-        self.support_of(pair).is_some_and(|support| !support.is_enough())
-    }
-
-    /// Returns true if the island of a pair has no reliable contact.
-    pub(super) fn has_no_support(&mut self, pair: [u32; 2]) -> bool {
-        self.support_of(pair).is_some_and(|support| support.reliable == 0)
+    /// Returns the support of the island of a pair, if that has too few reliable contacts.
+    pub(super) fn open_support(&mut self, pair: [u32; 2]) -> Option<Support> {
+        let first = self.island(pair);
+        self.support.get(&first).copied().filter(|support| !support.is_enough())
     }
 
     /// Replaces `list` by the crossings in islands that have too few contacts, one island after another. Crossings with an
@@ -334,7 +351,7 @@ impl OverlapIslands {
             let crossing = self.crossings[index];
             let Crossing { pair, is_crossing, .. } = crossing;
             let Some(outward) = crossing.outward_signs().filter(|_| is_crossing) else { continue };
-            if self.needs_support(pair) {
+            if self.open_support(pair).is_some() {
                 list.push(Unsupported {
                     island: self.island(pair),
                     pair,
@@ -355,27 +372,7 @@ impl OverlapIslands {
 
     /// Returns true if a contact does not push against the direction in which the bodies separate.
     pub(super) fn leads_apart(&self, normal: DVec3) -> bool {
-        self.separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
-    }
-
-    /// Returns a test of normals. It is true for contacts that push neither against the reliable ones of their island, nor
-    /// through a sheet.
-    pub(super) fn agrees(&mut self, pair: [u32; 2]) -> impl Fn(DVec3) -> bool {
-        let support = self.support_of(pair);
-        move |normal| {
-            let agrees = |Support { normals, sheet_side, way, .. }: Support| {
-                normals.dot(normal) >= 0.0
-                    && sheet_side.dot(normal) >= 0.0
-                    && way.is_none_or(|way| way.has(normal))
-            };
-            self.leads_apart(normal) && support.is_none_or(agrees)
-        }
-    }
-
-    /// Returns the cone of normals that [`agrees`](Self::agrees) accepts, if the island has a way out.
-    pub(super) fn cone(&mut self, pair: [u32; 2]) -> Option<DoubleCone> {
-        let way = self.support_of(pair)?.way?;
-        Some(DoubleCone { axis: way.normal, least_square: way.least_cosine().powi(2) })
+        leads_apart(normal, self.separation)
     }
 
     /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against
@@ -417,6 +414,7 @@ impl OverlapIslands {
             let [node, _] = self.nodes(crossing.pair);
             let first = self.islands.first(node);
             let support = self.support.entry(first).or_default();
+            support.separation = self.separation;
             support.pairs += 1;
             support.reliable += u32::from(is_fine);
             support.normals += if is_fine { crossing.normal } else { DVec3::ZERO };
@@ -447,12 +445,10 @@ impl OverlapIslands {
         }
         self.rejected.len() > before
     }
+}
 
-    /// Returns the support of the island of a pair.
-    fn support_of(&mut self, pair: [u32; 2]) -> Option<Support> {
-        let first = self.island(pair);
-        self.support.get(&first).copied()
-    }
+fn leads_apart(normal: DVec3, separation: Option<DVec3>) -> bool {
+    separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
 }
 
 #[cfg(test)]

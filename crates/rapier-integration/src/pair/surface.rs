@@ -10,7 +10,7 @@
 //! A sheet is a solid for a [thin](THIN) body in front of it.
 //!
 //! Crossing surfaces never stay without a contact: an island without one gets the best there is
-//! ([`OverlapIslands`]).
+//! ([`OverlapIslands`](super::islands::OverlapIslands)).
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
@@ -19,7 +19,7 @@ use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleCon
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
-use super::islands::{Crossing, OverlapIslands, SheetSide};
+use super::islands::{Crossing, SheetSide, Support};
 use super::triangle_contacts::in_local;
 use super::triangle_shape::ShapeFacets;
 use super::triangle_shapes::{
@@ -246,17 +246,17 @@ impl<'a> SurfaceFilter<'a> {
         Verdict::Crossing(crossing, good.map(|contact| TriangleSurfaceContact { contact, source }))
     }
 
-    /// Second pass: returns a contact for an island that has too few. It may be deeper than its points:
+    /// Second pass: returns a contact for an island whose `support` is not enough. It may be deeper than its points:
     /// a flat side goes on beyond a triangle.
     pub(super) fn supporting_contact(
         &self,
         crossing: &Crossing,
-        islands: &mut OverlapIslands,
+        support: Support,
         clipped: &mut ManifoldPoints,
     ) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let (cone, agrees) = (islands.cone(self.pair), islands.agrees(self.pair));
-        let has_extremal = crossing.has_extremal;
+        let (has_extremal, cone) = (crossing.has_extremal, support.cone());
+        let agrees = |normal: DVec3| support.agrees(normal);
         let outward = self.outward(self.are_solid());
         let contact = outward.least(has_extremal, ends, cone, agrees, clipped)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
@@ -270,7 +270,7 @@ impl<'a> SurfaceFilter<'a> {
             let direction = self.in_frame(i, direction);
             self.surfaces[i].as_ref().map_or(0.0, |s| s.side_beyond(self.pair[i], direction, most))
         };
-        let beyond = if islands.has_no_support(self.pair) {
+        let beyond = if support.is_missing() {
             side_beyond(0, contact.normal) + side_beyond(1, -contact.normal)
         } else {
             0.0

@@ -342,12 +342,11 @@ impl TriangleQuery<'_> {
         deep::add_contacts(&self.shapes, islands, contours, contacts);
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
-            if islands.needs_support(crossing.pair) {
-                let contact = self.shapes.with_filter(crossing.pair, true, |filter| {
-                    filter.supporting_contact(&crossing, islands, clipped)
-                });
-                contacts.extend(contact.flatten().map(|contact| (crossing.pair, contact)));
-            }
+            let Some(support) = islands.open_support(crossing.pair) else { continue };
+            let contact = self.shapes.with_filter(crossing.pair, true, |filter| {
+                filter.supporting_contact(&crossing, support, clipped)
+            });
+            contacts.extend(contact.flatten().map(|contact| (crossing.pair, contact)));
         }
         // Contacts of contours come first.
         contacts.sort_unstable_by_key(|(pair, hit)| (*pair, hit.source != ContactSource::PushOut));
