@@ -11,6 +11,7 @@ mod far;
 mod field;
 mod inside;
 mod islands;
+mod mesh_pair;
 mod passed;
 mod pose;
 mod query;
@@ -28,7 +29,7 @@ pub(crate) use convex::{
 };
 pub(crate) use descents::BvhDescent;
 pub(crate) use field::Field;
+pub(crate) use mesh_pair::{MeshPair, ShapeView};
 pub(crate) use pose::{MeshPlace, PairPose};
 pub(crate) use query::{QueryOutcome, update_manifolds};
 pub use triangle_contacts::TriangleContacts;
-pub(crate) use triangle_shapes::{MeshPair, ShapeView};

@@ -1,13 +1,4 @@
-//! Two shapes made of triangles, as the contact query sees them: a mesh, and another mesh or a height field.
-//!
-//! Stock Parry finds no contacts of a mesh and a height field. Triangles of a field have the numbers that Parry gives them in
-//! contacts with convex shapes.
-//!
-//! # Edits
-//!
-//! A pair keeps candidates, and Rapier drops them when a shape was edited. For hosts that do not,
-//! another field, scale, flag, or a removed triangle is noticed at once. An added triangle is
-//! noticed at the next descent.
+//! Two shapes made of triangles, as the contact query sees them.
 
 use std::ops::Index;
 use std::sync::OnceLock;
@@ -20,18 +11,14 @@ use parry3d::shape::TrianglePseudoNormals;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 use sbbk_core::leaf::LateralCulling;
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{Facets, Side};
+use sbbk_core::surface::Facets;
 use sbbk_core::tree::Tree;
 
-use super::field::{Field, FieldToken};
-use super::inside::{HeldMesh, InsideTest};
 use super::pose::PairPose;
-use super::query::{Moving, Pair};
-use super::reduce::{FILTERED, PatchPlan};
+use super::query::Moving;
+use super::reduce::FILTERED;
 use super::triangle_shape::{FieldShape, MeshShape, TriangleShape};
-use super::triangles::TriangleQuery;
-use crate::SbbkConfig;
-use crate::mesh::{Change, LazySurface, MeshView, PairMesh};
+use crate::mesh::MeshView;
 
 /// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body of one length unit has a
 /// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
@@ -66,130 +53,6 @@ pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
 
 /// Features that were closest at the last query, to be tried first.
 pub(super) type Hint = Option<FeaturePair>;
-
-/// A mesh and another mesh or a height field.
-#[derive(Copy, Clone)]
-pub(crate) struct MeshPair<'a> {
-    pub(crate) pose: &'a PairPose,
-    pub(crate) shapes: [ShapeView<'a>; 2],
-    pub(crate) config: &'a SbbkConfig,
-}
-
-/// A shape during one query.
-#[derive(Copy, Clone)]
-pub(crate) enum ShapeView<'a> {
-    Mesh(MeshView<'a>),
-    Field(Field<'a>),
-}
-
-/// A pair's knowledge of one of its shapes, which is a mesh or a field.
-#[derive(Clone, Default)]
-pub(crate) struct KnownShape {
-    mesh: PairMesh,
-    field: Option<FieldToken>,
-}
-
-impl KnownShape {
-    /// Compares with the shape of the last query, and stores the one of this query.
-    fn update(&mut self, shape: &ShapeView<'_>) -> Change {
-        let field = match shape {
-            ShapeView::Mesh(mesh) => {
-                self.field = None;
-                return self.mesh.update(mesh);
-            }
-            ShapeView::Field(field) => FieldToken::of(field.0),
-        };
-        self.mesh = PairMesh::default();
-        match self.field.replace(field) {
-            None => Change::Unknown,
-            Some(known) if known == field => Change::Unchanged,
-            Some(_) => Change::Replaced,
-        }
-    }
-}
-
-impl MeshPair<'_> {
-    fn are_meshes(&self) -> bool {
-        self.shapes.iter().all(|shape| matches!(shape, ShapeView::Mesh(_)))
-    }
-
-    /// Returns true if no shape can change while its token stays.
-    fn are_rigid(&self) -> bool {
-        self.shapes.iter().all(|shape| match shape {
-            ShapeView::Mesh(mesh) => mesh.is_rigid(),
-            ShapeView::Field(_) => true,
-        })
-    }
-
-    /// Returns true for contacts of surfaces.
-    fn has_surfaces(&self) -> bool {
-        self.config.has_surfaces() && self.are_rigid()
-    }
-
-    /// Returns a shape with its tree, if there is one. Meshes get trees for each other.
-    fn opened<'q>(
-        &self,
-        shape: &'q ShapeView<'q>,
-        known: &'q mut KnownShape,
-    ) -> (TriangleShape<'q>, Option<&'q Tree>) {
-        let has_surfaces = self.has_surfaces();
-        match shape {
-            ShapeView::Mesh(view) => {
-                let are_meshes = self.are_meshes();
-                let is_needed = has_surfaces || are_meshes && self.are_rigid();
-                let surface = is_needed.then(|| known.mesh.acquire(view, are_meshes)).flatten();
-                let tree = surface.as_ref().and_then(LazySurface::tree);
-                let surface = surface.filter(|_| has_surfaces);
-                (TriangleShape::Mesh(MeshShape { view, surface, is_room: false }), tree)
-            }
-            ShapeView::Field(field) => {
-                let is_solid = self.config.solid_height_fields && field.points_up();
-                let side = if is_solid { Side::Outer } else { Side::Sheet };
-                let side = has_surfaces.then_some(side);
-                (TriangleShape::Field(FieldShape { field: *field, side, cone: None }), None)
-            }
-        }
-    }
-}
-
-impl<'a> Pair for MeshPair<'a> {
-    /// The shapes, whether one is a room for the other, and whether one is inside the other.
-    type State = ([KnownShape; 2], [InsideTest; 2]);
-    type Hint = Hint;
-    type Query<'q>
-        = TriangleQuery<'q>
-    where
-        Self: 'q;
-
-    fn open<'q>(
-        &'q self,
-        ([known1, known2], [in_room, inside]): &'q mut Self::State,
-    ) -> (Change, TriangleQuery<'q>) {
-        let [shape1, shape2] = &self.shapes;
-        let change = known1.update(shape1).max(known2.update(shape2));
-        if change != Change::Unchanged {
-            (*in_room, *inside) = Default::default();
-        }
-        let (shape1, tree1) = self.opened(shape1, known1);
-        let (shape2, tree2) = self.opened(shape2, known2);
-        let radius = shape1.ball().radius.min(shape2.ball().radius);
-        let mut shapes = TriangleShapes {
-            pose: self.pose,
-            larger: usize::from(shape1.size_squared() < shape2.size_squared()),
-            shapes: [shape1, shape2],
-            trees: tree1.zip(tree2).map(<[_; 2]>::from),
-            filter_distance: filter_distance(self.has_surfaces(), radius),
-            reach: OnceLock::new(),
-        };
-        let is_in_room = HeldMesh::of(&shapes).is_some_and(|mesh| mesh.is_in_room(in_room));
-        if let TriangleShape::Mesh(mesh) = &mut shapes.shapes[shapes.larger] {
-            mesh.is_room = is_in_room;
-        }
-        let has_patches = self.config.has_patches() && self.are_rigid();
-        let patches = has_patches.then(|| PatchPlan::new(self.pose.prediction, radius));
-        (change, TriangleQuery { shapes, patches, inside })
-    }
-}
 
 /// Two shapes made of triangles at a pose. One of them is a mesh.
 pub(crate) struct TriangleShapes<'q> {

@@ -10,9 +10,9 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::strays::seam;
 
 use super::contact::{NormalSource, PartContact};
+use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, ray_length};
-use super::query::ConvexPair;
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::ContactSummary;
