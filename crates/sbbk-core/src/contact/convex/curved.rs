@@ -131,14 +131,11 @@ impl<const IS_CONE: bool> Solid for TurnedSupport<IS_CONE> {
     fn breaks(&self, start: DVec3, edge: DVec3) -> [f64; 5] {
         let Self { half_height, radius } = *self;
         let lean = if IS_CONE { radius / (2.0 * half_height) } else { 0.0 };
-        // Over the rim.
-        let level_squared = edge.x * edge.x + edge.z * edge.z;
-        let to_axis = -(start.x * edge.x + start.z * edge.z) / level_squared;
-        let beside = (start.x * edge.z - start.z * edge.x).powi(2) / level_squared;
-        let half_chord = ((radius * radius - beside) / level_squared).sqrt();
+        let level = LevelEdge::new(start, edge);
+        let half_chord = level.half_chord(radius);
         let [to_base, to_top] = [-half_height, half_height].map(|end| (end - start.y) / edge.y);
-        let nearest = near_slope(start, edge, lean);
-        [nearest, to_axis - half_chord, to_axis + half_chord, to_base, to_top]
+        let [over_rim, from_rim] = [-half_chord, half_chord].map(|half| level.to_axis + half);
+        [level.near_slope(edge.y, lean), over_rim, from_rim, to_base, to_top]
     }
 }
 
@@ -373,22 +370,49 @@ impl<const IS_CONE: bool> TriangleAndSolid<'_, TurnedSupport<IS_CONE>> {
     }
 }
 
-/// The place where the line of an edge is nearest to an endless slope, as a share of the edge. The
-/// slope comes `lean` nearer to the axis for each unit up.
-///
-/// Across the slope the distance varies with `√(a² + l² t²) + lean y t`. Here `t` starts where the
-/// edge is nearest to the axis, at distance `a`; `l` is the level length and `y` the height of the
-/// edge. The minimum is at `l² t = -lean y √(a² + l² t²)`. Steeper edges have none.
-#[inline(always)]
-fn near_slope(start: DVec3, edge: DVec3, lean: f64) -> f64 {
-    let level_squared = edge.x * edge.x + edge.z * edge.z;
-    let to_axis = -(start.x * edge.x + start.z * edge.z) / level_squared;
-    let fall = -lean * edge.y;
-    if fall == 0.0 {
-        return to_axis;
+/// The line of an edge, seen along the axis. Places are shares of the edge.
+struct LevelEdge {
+    /// Square of the length.
+    squared: f64,
+    /// The place nearest to the axis.
+    to_axis: f64,
+    /// Twice the area of the triangle with the axis.
+    area: f64,
+}
+
+impl LevelEdge {
+    #[inline(always)]
+    fn new(start: DVec3, edge: DVec3) -> Self {
+        let squared = edge.x * edge.x + edge.z * edge.z;
+        Self {
+            squared,
+            to_axis: -(start.x * edge.x + start.z * edge.z) / squared,
+            area: start.x * edge.z - start.z * edge.x,
+        }
     }
-    let beside = (start.x * edge.z - start.z * edge.x) / level_squared;
-    to_axis + fall * beside.abs() / (level_squared - fall * fall).sqrt()
+
+    /// Half the chord of a circle around the axis; NaN if the line passes the circle.
+    #[inline(always)]
+    fn half_chord(&self, radius: f64) -> f64 {
+        let beside = self.area.powi(2) / self.squared;
+        ((radius * radius - beside) / self.squared).sqrt()
+    }
+
+    /// The place nearest to an endless slope, which comes `lean` nearer to the axis for each unit up. `up` is the height of
+    /// the edge.
+    ///
+    /// Across the slope the distance varies with `√(a² + l² t²) + lean y t`. Here `t` starts where the
+    /// edge is nearest to the axis, at distance `a`; `l` is the level length and `y` the height of the
+    /// edge. The minimum is at `l² t = -lean y √(a² + l² t²)`. Steeper edges have none.
+    #[inline(always)]
+    fn near_slope(&self, up: f64, lean: f64) -> f64 {
+        let fall = -lean * up;
+        if fall == 0.0 {
+            return self.to_axis;
+        }
+        let beside = self.area / self.squared;
+        self.to_axis + fall * beside.abs() / (self.squared - fall * fall).sqrt()
+    }
 }
 
 /// The direction, by level and upright coordinates, of the least depth of the surface that a rim
