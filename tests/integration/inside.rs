@@ -130,8 +130,8 @@ fn push_out_does_not_depend_on_earlier_poses() {
     assert!(inside > 300 && none > 100 && reused > 100, "{inside} {none} {reused}");
 }
 
-/// Would catch a body that falls through the declared solid it starts in, is thrown out, or stops at its
-/// surface with the sides of its triangles.
+/// Would catch a body that starts in a declared solid and falls through, is thrown out, or stops at the
+/// surface.
 #[test]
 fn a_body_that_starts_in_a_solid_comes_out_slowly() {
     let ground = Vec3::new(5.0, 1.0, 5.0);

@@ -3,9 +3,9 @@
 //! Two rigid meshes with trees descend both trees. Two others descend Parry's BVHs. A mesh and a height field
 //! visit Parry's BVH of the mesh and read the cells under it ([`sbbk_core::field`]).
 //!
-//! A descent of BVHs first finds the triangles of the larger mesh near the box of the other: often there
-//! are none. Groups of these descend the other BVH until something is near, then each four of a
-//! group do.
+//! A descent of BVHs first finds the triangles of the larger mesh near the box of the other. Many
+//! descents end here. Groups of such triangles descend the other BVH until something is near. Then each
+//! four of a group descend.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;

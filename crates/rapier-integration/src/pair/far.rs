@@ -88,7 +88,7 @@ impl TriangleShapes<'_> {
             let is_minimum = |filter: &SurfaceFilter<'_>| filter.is_local_minimum(contact);
             let counts =
                 || is_near(contact) || self.with_filter(*pair, true, is_minimum) == Some(true);
-            // There is room for some hundreds.
+            // Some hundreds of such directions fit on a sphere.
             if !has_like(directions, contact.normal, ONE_DIRECTION) && counts() {
                 directions.push(contact.normal);
             }

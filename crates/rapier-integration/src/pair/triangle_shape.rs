@@ -34,7 +34,7 @@ pub(crate) struct MeshShape<'q> {
 /// A height field.
 pub(crate) struct FieldShape<'q> {
     pub(super) field: Field<'q>,
-    /// Where the ground is, for contacts of surfaces.
+    /// Side of the ground, for contacts of surfaces.
     pub(super) side: Option<Side>,
     /// The last triangle that was asked for its normal cone, and the cone. Contacts of a triangle follow each
     /// other, and Parry computes the cone from four triangles.

@@ -185,7 +185,7 @@ impl PartPair for Found {
     }
 }
 
-/// How a linear cast ends.
+/// End of a linear cast.
 fn status(is_penetrating: bool) -> ShapeCastStatus {
     if is_penetrating {
         ShapeCastStatus::PenetratingOrWithinTargetDist

@@ -14,9 +14,9 @@
 //! in time and one step arrives. Over two meshes, a search with lower bounds of times finds the
 //! earliest of all pairs.
 //!
-//! The later of two bounds counts. Boxes that move along a line overlap on each axis of frame 1
-//! during an interval, and on all three during the intersection (the slabs of a ray against the
-//! Minkowski sum). Volumes with a gap need at least the gap over the speed.
+//! The later of two bounds counts. Boxes that move along a line overlap on an axis of frame 1
+//! during an interval. They overlap on all three axes during the intersection (the slabs of a ray
+//! against the Minkowski sum). Volumes with a gap need at least the gap over the speed.
 //!
 //! # Rounding
 //!

@@ -171,9 +171,8 @@ impl NearestSearch<'_> {
     }
 }
 
-/// A pair of leaves that is probably near the answer, down both trees from the roots, always to the children whose
-/// centres are nearest to each other. A search prunes by the best pair of triangles so far, so a good one at the start is worth more
-/// than any later.
+/// Returns a pair of leaves that is probably near the answer. Goes down both trees to the children whose centres are
+/// nearest to each other. A search prunes by the best pair of triangles so far, so an early good one is worth most.
 fn near_leaves<'a>(
     trees: (&'a Tree, &'a Tree),
     frame: &PairFrame,

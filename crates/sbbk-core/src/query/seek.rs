@@ -66,8 +66,8 @@ pub(super) fn seek<B: Bounds>(
     });
 }
 
-/// Opens pairs of nodes of any two hierarchies, depth first. Of the pairs that a call of `open` adds, the one with the
-/// least bound is next, and the last one of equal bounds.
+/// Opens pairs of nodes of any two hierarchies, depth first. The pair with the least bound is next among those that a call
+/// of `open` adds, and the last one of equal bounds.
 ///
 /// `open` gets the bound of a pair and the pair. It compares two leaves, or adds the pairs below two nodes with their
 /// bounds. The search ends when it breaks.

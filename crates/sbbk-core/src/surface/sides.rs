@@ -131,7 +131,7 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).side(triangle)
 }
 
-/// Limit of the tests for walls. Beyond it, walls count as faces.
+/// Limit of the tests for walls. Walls count as faces beyond this limit.
 #[derive(Clone, Copy)]
 pub(super) struct WallLimit {
     /// Triangles that the rays of these tests may come near. Higher: meshes of open parts in each other are slower. Lower:
@@ -164,7 +164,7 @@ pub(super) struct RayMesh<'a, T> {
     pub(super) memo: &'a PlaceMemo,
     /// Triangles that rays have come near.
     work: Cell<i64>,
-    /// What is left of the limit of tests for walls.
+    /// Work that tests for walls may still take.
     left: Cell<i64>,
     limit: WallLimit,
 }

@@ -3,7 +3,7 @@
 //! Signed volumes and areas tell on which side of a face or edge the origin lies, as in M.
 //! Montanari, N. Petrinic, E. Barbieri, "Improving the GJK algorithm for faster and more reliable
 //! distance queries between convex objects", 2017. If rounding may have chosen a sign, all faces or
-//! edges are tried and the nearest one counts, so a flat simplex is no special case.
+//! edges are tried. The nearest one counts, so a flat simplex is no special case.
 
 use super::support::Vertex;
 use glamx::DVec3;

@@ -31,8 +31,8 @@ pub(super) trait Solid: SupportMap {
     /// The way from the shape to a point; zero inside.
     fn outside(&self, point: DVec3) -> DVec3;
 
-    /// Places along an edge, as shares of the edge, near which the edge is nearest or passes from one part of the surface to
-    /// another; any numbers.
+    /// Places along an edge, as shares of the edge; any numbers. Near them the edge is nearest, or passes to another part of
+    /// the surface.
     #[inline(always)]
     fn breaks(&self, _start: DVec3, _edge: DVec3) -> [f64; 5] {
         [f64::NAN; 5]
