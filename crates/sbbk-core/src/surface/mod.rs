@@ -9,15 +9,17 @@ mod facets;
 mod one_ring;
 mod sides;
 mod slopes;
+mod spread;
 pub mod strays;
 mod triangle;
 mod twins;
 
-pub use cones::{MinimumCones, minimum_cones};
+pub use cones::MinimumCones;
 pub use facets::Facets;
 pub use one_ring::Around;
 pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
+pub use spread::minimum_cones;
 pub use twins::{Place, place};
 
 use glamx::Vec3;
