@@ -28,6 +28,7 @@ fn floors() -> Vec<(&'static str, Vec<Mesh>)> {
         ("T-junctions", strips),
         ("T-junctions, turned", turned),
         ("each third twice", mesh::doubled(&plain, 3)),
+        ("slivers", mesh::with_slivers(&plain, 5)),
         ("two-sided", mesh::two_sided(&plain)),
         ("random winding", mesh::random_winding(&plain, 4)),
         ("box tiles", tiles.clone()),

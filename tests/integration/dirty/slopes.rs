@@ -43,6 +43,7 @@ fn rollers() -> Vec<Roller> {
         ball("inward ball of 6912", even(24), mesh::turned_inside_out(even(24))),
         ball("uneven ball of 5360", even(21), mesh::cube_ball(1.0, [10, 14, 18, 22, 26, 30])),
         ball("soup ball of 5292", even(21), mesh::unwelded(&even(21), 0.5e-4, 1)),
+        ball("ball of 5292 with slivers", even(21), mesh::with_slivers(&even(21), 2)),
         ball("two-sided ball of 6912", even(24), mesh::two_sided(&even(24))),
         Roller {
             name: "open tube of 720",

@@ -35,6 +35,7 @@ fn solids() -> Vec<(&'static str, Mesh, [f32; 2])> {
         ("two that overlap", Mesh::merged("overlapping", &overlapping), flat),
         ("soup, 0.1 mm apart", mesh::unwelded(&even, 0.5e-4, 1), flat),
         ("each third twice", mesh::doubled(&even, 3), flat),
+        ("slivers", mesh::with_slivers(&even, 3), flat),
     ]
 }
 

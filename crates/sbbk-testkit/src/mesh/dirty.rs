@@ -46,6 +46,25 @@ pub fn doubled(mesh: &Mesh, nth: usize) -> Mesh {
     Mesh::new(mesh.name.clone(), mesh.vertices.clone(), triangles.collect())
 }
 
+/// The mesh with slivers: on an edge of each second triangle lies one without an area, up to rounding. Each eighth has only one
+/// or two vertices.
+pub fn with_slivers(mesh: &Mesh, seed: u64) -> Mesh {
+    let mut random = Rand32::new(seed);
+    let mut dirty = mesh.clone();
+    for (index, corners) in mesh.triangles.iter().enumerate().filter(|(index, _)| index % 2 == 0) {
+        let edge = random.rand_range(0..3) as usize;
+        let [a, b] = [corners[edge], corners[(edge + 1) % 3]];
+        let middle = dirty.vertices.len() as u32;
+        let [from, to] = [a, b].map(|end| mesh.vertices[end as usize]);
+        dirty.vertices.push(from.lerp(to, random.rand_float()));
+        dirty.triangles.push([a, b, middle]);
+        if index % 8 == 0 {
+            dirty.triangles.extend([[a, a, b], [middle; 3]]);
+        }
+    }
+    dirty
+}
+
 /// The mesh with each triangle again, wound the other way.
 pub fn two_sided(mesh: &Mesh) -> Mesh {
     let mut both = mesh.clone();

@@ -58,8 +58,9 @@ impl TrianglePartPair<'_> {
         let corners @ [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
         let [normal, _] = self.placed.directions(contact.normal);
         let up = (b - a).cross(c - a);
+        // False for a triangle without an area.
         let is_upright =
-            up.cross(normal).length_squared() <= UPRIGHT * UPRIGHT * up.length_squared();
+            up.cross(normal).length_squared() < UPRIGHT * UPRIGHT * up.length_squared();
         (!is_upright).then(|| (self.placed.in_mesh(contact.on_triangle), seam(&corners)))
     }
 

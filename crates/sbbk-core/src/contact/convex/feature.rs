@@ -11,12 +11,24 @@ const FACE: f64 = 1.0 - 3.1e-6;
 /// count as the corner. Lower: rounding decides.
 const NONE: f64 = 1.0e-4;
 
+/// Least weight of a corner that counts as all.
+const MOST: f64 = 1.0 - NONE;
+
+/// Greatest sine of the first corner of a triangle that counts as a segment. Higher: faces of needles count as edges. Lower:
+/// rounding decides.
+const FLAT: f64 = 1.0e-12;
+
 /// The feature of a triangle at a contact point, given the unit normal of the contact. This is the
-/// face if the normal is the triangle's, otherwise the edge or corner at the point.
+/// face if the normal is the triangle's, otherwise the edge or corner at the point. A triangle without an area is its
+/// longest edge.
 pub fn feature_at(triangle: &[DVec3; 3], point: DVec3, normal: DVec3) -> Feature {
     let [a, b, c] = *triangle;
-    let face = (b - a).cross(c - a);
+    let (ab, ac) = (b - a, c - a);
+    let face = ab.cross(ac);
     let size = face.length_squared();
+    if size <= FLAT * FLAT * ab.length_squared() * ac.length_squared() {
+        return feature_of_segment(triangle, point);
+    }
     let along = normal.dot(face);
     if along * along >= FACE * size {
         return Feature::Face;
@@ -34,6 +46,22 @@ pub fn feature_at(triangle: &[DVec3; 3], point: DVec3, normal: DVec3) -> Feature
         [true, false, false] => Feature::Edge(1),
         [false, true, false] => Feature::Edge(2),
         _ => Feature::Face,
+    }
+}
+
+/// The feature at a point of a triangle without an area.
+#[cold]
+fn feature_of_segment(triangle: &[DVec3; 3], point: DVec3) -> Feature {
+    let edge = |i: u8| [i, (i + 1) % 3].map(|end| triangle[usize::from(end)]);
+    let length = |i: &u8| edge(*i)[0].distance(edge(*i)[1]);
+    let longest = (0..3).max_by(|i, j| length(i).total_cmp(&length(j))).unwrap_or_default();
+    let [from, to] = edge(longest);
+    // Not a number if the triangle is a point.
+    let share = (point - from).dot(to - from) / from.distance_squared(to);
+    match share {
+        NONE..=MOST => Feature::Edge(longest),
+        share if share > MOST => Feature::Vertex((longest + 1) % 3),
+        _ => Feature::Vertex(longest),
     }
 }
 
@@ -60,7 +88,14 @@ mod tests {
                 assert_eq!(feature_at(&triangle, point, normal), part, "{point}");
             }
             assert_eq!(feature_at(&triangle, point, DVec3::Z), Feature::Face);
-            assert_eq!(feature_at(&[a, b, b], point, aslant), Feature::Face);
+        }
+        // Triangles without an area.
+        let (segment, middle) = ([a, b.lerp(a, 0.3), b], a.midpoint(b));
+        for normal in [aslant, DVec3::Y, DVec3::Z] {
+            assert_eq!(feature_at(&segment, middle, normal), Feature::Edge(2));
+            assert_eq!(feature_at(&segment, a, normal), Feature::Vertex(0));
+            assert_eq!(feature_at(&segment, b, normal), Feature::Vertex(2));
+            assert_eq!(feature_at(&[a; 3], a, normal), Feature::Vertex(2));
         }
     }
 }
