@@ -12,7 +12,7 @@ use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
     Around, Facets, MinimumCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
-    minimum_cones, place, side,
+    hangs, is_flat, minimum_cones, place, side,
 };
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -153,8 +153,10 @@ impl Facets for MeshFacets<'_> {
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let near = BvhNode::leaf(box_between(corners), 0);
         // Doubles change no result. They are skipped where no search is needed to find them.
-        let is_double =
-            |triangle: &u32| matches!(self.twins, Twins::All(all, _) if all.is_double(*triangle));
+        let is_double = |triangle: &u32| match self.twins {
+            Twins::All(all, _) => all.is_double(*triangle),
+            Twins::Near(_) => sliver(self.mesh, *triangle).is_some(),
+        };
         let near = self.mesh.bvh().leaves(|node| node.intersects(&near));
         let _ = near.filter(|triangle| !is_double(triangle)).try_for_each(visit);
     }
@@ -298,9 +300,12 @@ impl Neighbour {
         let mut near: Vec<u32> = near.filter(shares_edge).collect();
         near.sort_unstable();
         let mut known = FxHashSet::default();
-        near.retain(|&other| known.insert(places(corners(other))));
+        near.retain(|&other| {
+            sliver(mesh, other) != Some(true) && known.insert(places(corners(other)))
+        });
+        let is_double = !near.contains(&triangle) || sliver(mesh, triangle).is_some();
         if !near.contains(&triangle) {
-            return Self { is_double: known.contains(&places(own)), ..Self::default() };
+            return Self { is_double, ..Self::default() };
         }
         let (mut forward, mut backward, mut twins) = ([0; 3], [0; 3], [None; 3]);
         for other in near {
@@ -318,8 +323,31 @@ impl Neighbour {
         }
         let twins =
             std::array::from_fn(|i| twins[i].filter(|_| forward[i] == 1 && backward[i] == 1));
-        Self { twins, ..Self::default() }
+        Self { twins, is_double, ..Self::default() }
     }
+}
+
+/// Returns whether a sliver [hangs](hangs()). `None` for other triangles.
+fn sliver(mesh: &TriMesh, triangle: u32) -> Option<bool> {
+    let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
+    let sides = |triangle: u32| {
+        let [a, b, c] = corners(triangle).map(place);
+        [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
+    };
+    if !is_flat(&corners(triangle)) {
+        return None;
+    }
+    let mut counted = sides(triangle).map(|ends| (ends, [0; 2]));
+    for other in mesh.bvh().intersect_aabb(&mesh.triangle(triangle).local_aabb()) {
+        let is_flat = u32::from(is_flat(&corners(other)));
+        let theirs = sides(other);
+        for (ends, [flat, all]) in &mut counted {
+            let count = theirs.iter().filter(|side| *side == ends).count() as u32;
+            *flat += is_flat * count;
+            *all += count;
+        }
+    }
+    hangs(&counted)
 }
 
 /// Returns the places of three corners, sorted.
@@ -391,7 +419,7 @@ mod tests {
     /// others.
     #[test]
     fn local_twins_and_doubles_are_those_of_the_surface() {
-        let (mut random, mut found, mut doubles) = (Rand32::new(1), 0, 0);
+        let (mut random, mut found, mut doubles, mut slivers) = (Rand32::new(1), 0, 0, 0);
         for round in 0..400 {
             let mut place = || Vector::from_array([(); 3].map(|()| random.rand_range(0..3) as f32));
             let vertices: Vec<Vector> = (0..12).map(|_| place()).collect();
@@ -410,14 +438,17 @@ mod tests {
             let places = mesh.triangles().map(|triangle| places(*triangle.vertices()));
             let places: Vec<_> = places.collect();
             for (i, corners) in places.iter().enumerate() {
-                let is_double = places[..i].contains(corners);
+                let is_repeated = places[..i].contains(corners);
                 let triangle = i as u32;
+                let is_sliver = sliver(&mesh, triangle).is_some();
                 let told = [whole.is_double(triangle), facets.is_double(triangle)];
+                let is_double = is_repeated || is_sliver;
                 assert_eq!(told, [is_double; 2], "{triangle} of {:?}", mesh.indices());
-                doubles += u32::from(is_double);
+                doubles += u32::from(is_repeated);
+                slivers += u32::from(is_sliver);
             }
         }
-        assert!(found > 1000 && doubles > 100, "{found} twins, {doubles} doubles");
+        assert!(found > 1000 && doubles > 100 && slivers > 100, "{found} {doubles} {slivers}");
     }
 
     /// Boxes are alone, touch, cross, or are within others. Would catch parts that share a wrong side.

@@ -20,7 +20,7 @@ pub use one_ring::Around;
 pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
 pub use spread::minimum_cones;
-pub use twins::{Place, place};
+pub use twins::{Place, hangs, is_flat, place};
 
 use glamx::Vec3;
 use rustc_hash::FxHashMap;
@@ -74,7 +74,8 @@ impl Surface {
             .side(triangle)
     }
 
-    /// True if an earlier triangle has the same corners, in either winding. The earlier triangle has its contacts.
+    /// True if other triangles have the contacts of a triangle: an earlier one with the same corners, in either winding, or those
+    /// at the sides of one without an area. A point has no contacts.
     #[inline]
     pub fn is_double(&self, triangle: u32) -> bool {
         self.doubles.contains(triangle)

@@ -409,14 +409,22 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
     /// What the rays find if only triangles count for which `counts` is true.
     fn side(&self, counts: impl Fn(u32) -> bool) -> Side {
         let Some(front) = self.winding(0, &counts) else { return Side::Outer };
-        if front >= 1 {
-            return Side::Inner;
+        let is_behind = self.winding(1, &counts).is_none_or(|back| back >= 1);
+        match (front, is_behind || front >= 1 && self.have_ties()) {
+            (1.., true) => Side::Inner,
+            (_, true) => Side::Outer,
+            // Also a triangle of a solid that is wound the other way.
+            (1.. | ..=-1, false) => Side::Turned,
+            (0, false) => Side::Sheet,
         }
-        match self.winding(1, &counts) {
-            None | Some(1..) => Side::Outer,
-            _ if front < 0 => Side::Turned,
-            _ => Side::Sheet,
-        }
+    }
+
+    /// True if triangles that a ray meets are flush. Rays from within may then count too few.
+    fn have_ties(&self) -> bool {
+        self.hits.iter().filter_map(|hits| hits.get()?.as_ref()).any(|hits| {
+            let is_tie = |pair: &[Hit]| pair[1].length - pair[0].length <= TIE * pair[1].length;
+            hits.windows(2).any(is_tie)
+        })
     }
 
     /// True if the body is in front. Takes one ray.

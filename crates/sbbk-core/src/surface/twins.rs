@@ -5,6 +5,7 @@ use std::hash::BuildHasher;
 use glamx::Vec3;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
+use super::triangle::{area_vector, longest_side};
 use super::{PAIRED, SMALL_COMPONENT};
 use crate::collections::CompactIndices;
 
@@ -26,7 +27,7 @@ pub(super) struct Adjacency {
     pub(super) has_small_components: bool,
     /// The triangles of components with an edge that has no twin. `None` for a mesh of more than [`PAIRED`] triangles.
     pub(super) open: Option<TriangleSet>,
-    /// Triangles with the corners of an earlier one, in either winding.
+    /// Triangles with the corners of an earlier one, in either winding, and slivers.
     pub(super) doubles: TriangleSet,
 }
 
@@ -40,6 +41,14 @@ impl TriangleSet {
         let mut bits = vec![0; count.div_ceil(64)];
         insert(&mut bits);
         Self(if bits.iter().all(|&word| word == 0) { Box::default() } else { bits.into() })
+    }
+
+    /// This set of `count` triangles and some more.
+    fn with(&self, more: &[u32], count: usize) -> Self {
+        Self::new(count, |bits| {
+            bits.iter_mut().zip(&*self.0).for_each(|(word, known)| *word = *known);
+            more.iter().for_each(|&triangle| _ = insert(bits, triangle as usize));
+        })
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -100,6 +109,69 @@ fn doubles(welded: &[u32], triangles: &[[u32; 3]], twins: &[Option<u32>]) -> Tri
     })
 }
 
+/// Triangles without an area. Each is a point, or has an edge of a triangle that has one.
+#[derive(Default)]
+struct Slivers {
+    all: Vec<u32>,
+    /// Slivers that fill no gap between three others. Edges have their twins without them.
+    hanging: FxHashSet<u32>,
+}
+
+impl Slivers {
+    /// Finds the slivers of a mesh with these edges.
+    fn find(vertices: &[Vec3], welded: &[u32], triangles: &[[u32; 3]], edges: &[Edge]) -> Self {
+        let corners = |triangle: u32| triangles[triangle as usize].map(|i| vertices[i as usize]);
+        let flat = (0..triangles.len() as u32).filter(|&triangle| is_flat(&corners(triangle)));
+        let flat: Vec<u32> = flat.collect();
+        let mut slivers = Self::default();
+        if flat.is_empty() {
+            return slivers;
+        }
+        let sides = |triangle: u32| {
+            let [a, b, c] = triangles[triangle as usize].map(|corner| welded[corner as usize]);
+            [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
+        };
+        // Half-edges of each side: of triangles without an area, and of all.
+        let mut counts = FxHashMap::<[u32; 2], [u32; 2]>::default();
+        for side in flat.iter().flat_map(|&triangle| sides(triangle)) {
+            counts.entry(side).or_default()[0] += 1;
+        }
+        for Edge { ends, counts: [up, down], .. } in edges {
+            counts.entry(*ends).and_modify(|known| known[1] = up + down);
+        }
+        for triangle in flat {
+            let sides = sides(triangle).map(|ends| (ends, counts[&ends]));
+            if let Some(hangs) = hangs(&sides) {
+                slivers.all.push(triangle);
+                slivers.hanging.extend(hangs.then_some(triangle));
+            }
+        }
+        slivers
+    }
+}
+
+/// Returns whether a triangle without an area hangs: it does not fill a gap between three others. `None` if it is a segment that
+/// shares no side with a triangle that has an area. `sides` have their ends, and the half-edges of triangles without an area
+/// and of all.
+pub fn hangs<End: PartialEq>(sides: &[([End; 2], [u32; 2]); 3]) -> Option<bool> {
+    let is_of_face = |([a, b], [flat, all]): &([End; 2], [u32; 2])| a != b && all > flat;
+    let is_filled = |([a, b], [_, all]): &([End; 2], [u32; 2])| a != b && *all == 2;
+    let is_point = sides.iter().all(|([a, b], _)| a == b);
+    (is_point || sides.iter().any(is_of_face)).then(|| !sides.iter().all(is_filled))
+}
+
+/// Roundings of a corner that lies on a side. Higher: low triangles have no contacts. Lower: rounding decides where slivers
+/// have contacts.
+const ROUNDINGS: f64 = 4.0 * f32::EPSILON as f64;
+
+/// Returns true if a triangle has no area, up to rounding of its corners.
+pub fn is_flat(corners: &[Vec3; 3]) -> bool {
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    let (area, longest) = (area_vector(&[a, b, c]), longest_side(&[a, b, c]));
+    let magnitude = a.abs().max(b.abs()).max(c.abs()).max_element();
+    area.length() <= ROUNDINGS * magnitude * longest
+}
+
 /// A place where vertices are one.
 pub type Place = [u32; 3];
 
@@ -113,7 +185,15 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
     let welded = weld(vertices);
     let valence = valence(&welded, triangles);
     let numbered = (0..).zip(triangles.iter().copied());
-    let (all, _) = edges(&welded, &valence, numbered.clone());
+    let edges_of = |of: &dyn Fn(u32) -> bool| {
+        edges(&welded, &valence, numbered.clone().filter(|(triangle, _)| of(*triangle))).0
+    };
+    let mut all = edges_of(&|_| true);
+    let slivers = Slivers::find(vertices, &welded, triangles, &all);
+    let hangs = |triangle: u32| slivers.hanging.contains(&triangle);
+    if !slivers.hanging.is_empty() {
+        all = edges_of(&|triangle| !hangs(triangle));
+    }
     // A closed component without handles has two more vertices and triangles than edges.
     let vertex_count = valence.iter().filter(|&&count| count > 0).count();
     let parts = (vertex_count + triangles.len()).saturating_sub(all.len()) / 2;
@@ -122,10 +202,13 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
     let mut twins = paired(&all, triangles.len());
     let hubs = hubs(vertices, &welded, &valence, triangles);
     let open = (triangles.len() <= PAIRED).then(|| open_parts(&twins));
-    let doubles = doubles(&welded, triangles, &twins);
+    let mut doubles = doubles(&welded, triangles, &twins);
     if !doubles.is_empty() {
-        let single = numbered.filter(|&(triangle, _)| !doubles.contains(triangle));
-        twins = paired(&edges(&welded, &valence, single).0, triangles.len());
+        let single = edges_of(&|triangle| !doubles.contains(triangle) && !hangs(triangle));
+        twins = paired(&single, triangles.len());
+    }
+    if !slivers.all.is_empty() {
+        doubles = doubles.with(&slivers.all, triangles.len());
     }
     let twins = CompactIndices::new(twins.into_iter());
     Adjacency { twins, is_closed, hubs, has_small_components, open, doubles }

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use crate::support::{Random, Soup};
+use crate::support::{Random, Soup, bumpy_ball};
 use crate::surface::shapes::{cube, mapped, together};
 use glamx::{DVec3, Vec3};
 use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, Surface, side};
@@ -89,6 +89,30 @@ fn only_triangles_covered_everywhere_are_walls_within() {
         println!("{faces} faces, {holes} holes; {walls} walls within, {missed} others");
         assert!(faces > 2000 && 100 * holes <= most * faces, "{counts:?}");
         assert!(walls > 100 && 4 * missed < walls, "{counts:?}");
+    }
+}
+
+/// Would catch a triangle that counts as a wall within, as its normal points inward.
+#[test]
+fn triangles_wound_the_other_way_are_turned() {
+    for (rings, nth) in [(6, 1000), (10, 50), (10, 9)] {
+        let mut soup = bumpy_ball(rings, 0.1);
+        soup.triangles.iter_mut().step_by(nth).for_each(|triangle| triangle.swap(1, 2));
+        let (surface, memo) = (soup.surface(), PlaceMemo::default());
+        for is_analysed in [true, false] {
+            let surface = is_analysed.then_some(&surface);
+            let (mut wrong, mut walls) = (0, 0);
+            for triangle in 0..soup.count() {
+                let is_turned = triangle as usize % nth == 0;
+                let right = if is_turned { Side::Turned } else { Side::Outer };
+                let found = found_side(surface, &soup, triangle, &memo);
+                wrong += u32::from(found != right);
+                walls += u32::from(found == Side::Inner);
+            }
+            println!("{wrong} of {} wrong, {walls} walls; each {nth}th turned", soup.count());
+            // Rays that meet a turned triangle count wrong.
+            assert!(walls == 0 && 20 * wrong <= soup.count(), "{wrong}, {walls} walls");
+        }
     }
 }
 

@@ -46,21 +46,19 @@ pub fn doubled(mesh: &Mesh, nth: usize) -> Mesh {
     Mesh::new(mesh.name.clone(), mesh.vertices.clone(), triangles.collect())
 }
 
-/// The mesh with slivers: on an edge of each second triangle lies one without an area, up to rounding. Each eighth has only one
-/// or two vertices.
+/// The mesh with slivers, which have no area up to rounding. On an edge of each second triangle lies one with a corner of its
+/// own, one with two equal corners, or a point.
 pub fn with_slivers(mesh: &Mesh, seed: u64) -> Mesh {
     let mut random = Rand32::new(seed);
     let mut dirty = mesh.clone();
-    for (index, corners) in mesh.triangles.iter().enumerate().filter(|(index, _)| index % 2 == 0) {
+    for corners in mesh.triangles.iter().step_by(2) {
         let edge = random.rand_range(0..3) as usize;
         let [a, b] = [corners[edge], corners[(edge + 1) % 3]];
         let middle = dirty.vertices.len() as u32;
         let [from, to] = [a, b].map(|end| mesh.vertices[end as usize]);
         dirty.vertices.push(from.lerp(to, random.rand_float()));
-        dirty.triangles.push([a, b, middle]);
-        if index % 8 == 0 {
-            dirty.triangles.extend([[a, a, b], [middle; 3]]);
-        }
+        let slivers = [[a, b, middle], [a, a, b], [middle; 3]];
+        dirty.triangles.push(slivers[random.rand_range(0..3) as usize]);
     }
     dirty
 }
@@ -81,6 +79,13 @@ pub fn random_winding(mesh: &Mesh, seed: u64) -> Mesh {
             triangle.swap(1, 2);
         }
     }
+    wound
+}
+
+/// The mesh with each `nth` triangle wound the other way.
+pub fn turned(mesh: &Mesh, nth: usize) -> Mesh {
+    let mut wound = mesh.clone();
+    wound.triangles.iter_mut().step_by(nth).for_each(|triangle| triangle.swap(1, 2));
     wound
 }
 

@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use glamx::Vec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::surface::strays::touches;
+use sbbk_core::surface::strays::{self, touches};
 
 use super::contact::PartContact;
 use super::ghosts::{GhostContacts, corner_key};
@@ -31,6 +31,8 @@ impl ConvexQuery<'_> {
         let [triangle, part] = self.pair.mesh_place.swap(of);
         let touches = |other: u32| {
             let corners = self.pair.mesh.corners(other).map(|corner| corner.as_dvec3());
+            // A triangle that is a point has no seam of its own.
+            let seam = if seam > 0.0 { seam } else { strays::seam(&corners) };
             other != triangle && touches(&corners, [place.as_dvec3(); 2], seam)
         };
         if contacts.len() <= LINEAR_SEARCH {

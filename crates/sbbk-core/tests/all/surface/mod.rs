@@ -23,8 +23,52 @@ fn before(half_edge: usize) -> usize {
     3 * (half_edge / 3) + (half_edge + 2) % 3
 }
 
-/// True if an earlier triangle has the same corners.
+/// True if an earlier triangle has the same corners, or if others have the sides of one without an area.
 fn is_double(mesh: &Soup, triangle: usize) -> bool {
+    is_repeated(mesh, triangle) || is_sliver(mesh, triangle)
+}
+
+/// True if the corners of a triangle are on a line, up to rounding.
+fn is_flat(mesh: &Soup, triangle: usize) -> bool {
+    let [a, b, c] = corners(mesh, 3 * triangle).map(|corner| corner.as_dvec3());
+    let longest = [b - a, c - b, a - c].map(DVec3::length).into_iter().fold(0.0, f64::max);
+    let magnitude = [a, b, c].map(|corner| corner.abs().max_element()).into_iter();
+    let rounding = 4.0 * f64::from(f32::EPSILON) * magnitude.fold(0.0, f64::max);
+    (b - a).cross(c - a).length() <= rounding * longest
+}
+
+/// The triangles with a side between the ends of a half-edge, except that of the half-edge.
+fn others_at(mesh: &Soup, half_edge: usize) -> Vec<usize> {
+    let [start, end, _] = corners(mesh, half_edge);
+    let has_side = |other: &usize| {
+        let ends = [0, 1, 2].map(|i| corners(mesh, 3 * other + i)).map(|[a, b, _]| [a, b]);
+        *other != half_edge / 3 && (ends.contains(&[start, end]) || ends.contains(&[end, start]))
+    };
+    (0..mesh.triangles.len()).filter(has_side).collect()
+}
+
+/// True if a triangle without an area is a point, or has a side of one that has an area.
+fn is_sliver(mesh: &Soup, triangle: usize) -> bool {
+    let is_of_face = |half_edge| {
+        let [start, end, _] = corners(mesh, half_edge);
+        start != end && others_at(mesh, half_edge).iter().any(|&other| !is_flat(mesh, other))
+    };
+    let [a, b, c] = corners(mesh, 3 * triangle);
+    let is_point = a == b && b == c;
+    is_flat(mesh, triangle) && (is_point || (3 * triangle..3 * triangle + 3).any(is_of_face))
+}
+
+/// True for a sliver that does not fill a gap between three others.
+fn hangs(mesh: &Soup, triangle: usize) -> bool {
+    let is_filled = |half_edge| {
+        let [start, end, _] = corners(mesh, half_edge);
+        start != end && others_at(mesh, half_edge).len() == 1
+    };
+    is_sliver(mesh, triangle) && !(3 * triangle..3 * triangle + 3).all(is_filled)
+}
+
+/// True if an earlier triangle has the same corners.
+fn is_repeated(mesh: &Soup, triangle: usize) -> bool {
     let sorted = |triangle: usize| {
         // Minus zero is at the same place.
         let mut places =
@@ -36,10 +80,11 @@ fn is_double(mesh: &Soup, triangle: usize) -> bool {
 }
 
 /// The twin of each half-edge by definition: the only half-edge from its end to its start, if no
-/// other runs from start to end. Doubles do not count.
+/// other runs from start to end. Doubles with the corners of others and hanging slivers do not count.
 fn brute_twins(mesh: &Soup) -> Vec<Option<u32>> {
     let count = 3 * mesh.triangles.len();
-    let doubles: Vec<bool> = (0..count / 3).map(|triangle| is_double(mesh, triangle)).collect();
+    let is_left_out = |triangle| is_repeated(mesh, triangle) || hangs(mesh, triangle);
+    let doubles: Vec<bool> = (0..count / 3).map(is_left_out).collect();
     let along = |from: Vec3, to: Vec3| -> Vec<u32> {
         let is_along = |&half_edge: &u32| {
             !doubles[half_edge as usize / 3] && corners(mesh, half_edge as usize)[..2] == [from, to]
