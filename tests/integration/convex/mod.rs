@@ -18,6 +18,8 @@ mod queries;
 mod question;
 /// A head at rest on a floor.
 mod rest;
+/// Thin shapes across edges of solids.
+mod rods;
 /// Contacts at edges within a surface.
 mod seams;
 /// A shape of each kind, and where it meets a mesh.

@@ -41,10 +41,10 @@ impl PartContact {
         Self { contact, feature, source: NormalSource::Own }
     }
 
-    /// Takes the normal of another contact.
-    pub(super) fn take_normal(&mut self, other: &ConvexContact) {
-        self.contact = ConvexContact { on_triangle: self.contact.on_triangle, ..*other };
-        self.source = NormalSource::Neighbour;
+    /// Returns this contact with the normal of another one.
+    pub(super) fn with_normal_of(&self, other: &ConvexContact) -> Self {
+        let contact = ConvexContact { on_triangle: self.contact.on_triangle, ..*other };
+        Self { contact, source: NormalSource::Neighbour, ..*self }
     }
 }
 

@@ -14,8 +14,14 @@
 //!
 //! The tip of a crossing shape may be nearer to the outside of both triangles at an edge than to the
 //! outside of the surface. This is so if a triangle at the edge extends beyond the contact along its
-//! normal. The contact then takes the normal of a face nearby along which the bodies cross, if there is
-//! one.
+//! normal. The contact then takes the normal of a face nearby that the shape crosses, if there is one.
+//!
+//! A thin shape that cuts a sharp edge has its end far from the planes of both faces. Two less deep ways
+//! part it from the triangle as well, and the least deep one counts:
+//!
+//! * Along another contact with its own normal, if the triangle does not extend beyond that contact.
+//! * Out of the wedge behind the planes of the triangle and another one, if the mesh is a solid. A
+//!   sheet has no body behind its triangles.
 //!
 //! [Borders](crate::pair::borders) of the mesh are met as their faces are.
 //!
@@ -276,6 +282,11 @@ impl GhostContacts {
             self.corners[one as usize].passed = Some((contact, is_passed));
         }
         is_passed
+    }
+
+    /// Returns true if a contact keeps its own normal.
+    pub(super) fn is_true(&self, contact: u32) -> bool {
+        self.sources[contact as usize] == contact && self.on_faces.binary_search(&contact).is_err()
     }
 
     /// Lists a contact and then all others whose triangles share a corner with its triangle.

@@ -6,6 +6,7 @@ use std::cell::RefCell;
 use glamx::Vec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
+use sbbk_core::surface::SurfaceKind;
 use sbbk_core::surface::strays::{self, touches};
 
 use super::contact::PartContact;
@@ -73,7 +74,7 @@ impl ConvexQuery<'_> {
             let source = contacts[source as usize].1.contact;
             // Along its own normal a contact keeps its own points.
             if contacts[contact].1.contact.normal != source.normal {
-                contacts[contact].1.take_normal(&source);
+                contacts[contact].1 = contacts[contact].1.with_normal_of(&source);
             }
         }
         scratch.ghosts = ghosts;
@@ -128,7 +129,7 @@ impl ConvexQuery<'_> {
         }
     }
 
-    /// Gives the normals of faces nearby to the contacts that need one.
+    /// Replaces contacts that a triangle [passes](GhostContacts::on_faces) by the least deep way out of the triangle.
     fn turn_to_faces(
         &self,
         ghosts: &mut GhostContacts,
@@ -136,15 +137,64 @@ impl ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
     ) {
         for i in 0..ghosts.on_faces.len() {
-            let contact = ghosts.on_faces[i];
-            ghosts.list_nearby(contact);
-            let face = ghosts.nearby.iter().find_map(|&other| {
-                let (of, own) = (contacts[other as usize].0, &contacts[contact as usize].1.contact);
-                self.with_pair(of, scratch, |pair| pair.face_contact_for(own))?
+            let passed = ghosts.on_faces[i];
+            ghosts.list_nearby(passed);
+            let (of, own) = contacts[passed as usize];
+            let [_, part] = self.pair.mesh_place.swap(of);
+            let is_crossing = |&other: &u32| contacts[other as usize].1.contact.distance < 0.0;
+            let face = ghosts.nearby.iter().copied().filter(is_crossing).find_map(|other| {
+                let of = contacts[other as usize].0;
+                self.with_pair(of, scratch, |pair| pair.face_contact_for(&own.contact))?
             });
-            if let Some(face) = face {
-                contacts[contact as usize].1.take_normal(&face);
+            if contacts.len() <= LINEAR_SEARCH {
+                // Thin shapes cross few triangles, which may be far from each other.
+                let is_of_part =
+                    |&other: &u32| self.pair.mesh_place.swap(contacts[other as usize].0)[1] == part;
+                let all = 0..contacts.len() as u32;
+                ghosts.nearby.extend(all.filter(is_of_part).filter(is_crossing));
+            }
+            let face = face.map(|face| own.with_normal_of(&face));
+            if let Some(least) = self.least_deep(ghosts, contacts, passed, face, scratch) {
+                contacts[passed as usize].1 = least;
             }
         }
+    }
+
+    /// Returns the least deep way out of a triangle. Candidates are `face`, other contacts that part the triangle, too, and
+    /// ways out of wedges of a solid.
+    fn least_deep(
+        &self,
+        ghosts: &GhostContacts,
+        contacts: &[([u32; 2], PartContact)],
+        passed: u32,
+        face: Option<PartContact>,
+        scratch: &mut ConvexScratch,
+    ) -> Option<PartContact> {
+        let (of, own) = contacts[passed as usize];
+        let [_, part] = self.pair.mesh_place.swap(of);
+        let hull = self.part_data.hull(part);
+        let is_solid =
+            || self.surface.as_ref().is_some_and(|known| known.kind() == SurfaceKind::Solid);
+        let is_deeper = |least: &PartContact, found: &PartContact| {
+            least.contact.distance < found.contact.distance
+        };
+        ghosts.nearby.iter().fold(face, |least, &other| {
+            let (of_other, PartContact { contact, .. }) = contacts[other as usize];
+            let [triangle, _] = self.pair.mesh_place.swap(of_other);
+            let found = self.with_pair(of, scratch, |pair| {
+                let is_parting = ghosts.is_true(other) && !pair.extends_beyond(&contact);
+                let parting = is_parting.then(|| own.with_normal_of(&contact));
+                // Against all faces a wedge leads as they do.
+                let wedge = face.and_then(|_| {
+                    pair.contact_of_wedge(self.pair.mesh.corners(triangle), hull)
+                        .filter(|_| is_solid())
+                });
+                [parting, wedge.map(|contact| PartContact { contact, ..own })]
+            });
+            found.into_iter().flatten().flatten().fold(least, |least, found| {
+                let is_less = least.as_ref().is_none_or(|least| is_deeper(least, &found));
+                if is_less && found.contact.distance < 0.0 { Some(found) } else { least }
+            })
+        })
     }
 }

@@ -52,14 +52,14 @@ impl<'a> Pair for ConvexPair<'a> {
 /// A contact query of a mesh and its convex shapes.
 pub(crate) struct ConvexQuery<'q> {
     pub(super) pair: &'q ConvexPair<'q>,
-    part_data: &'q PartData,
+    pub(super) part_data: &'q PartData,
     /// Surface of the mesh, for push-outs and walls within the mesh.
     pub(super) surface: Option<LazySurface<'q>>,
 }
 
 /// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
 /// stumble over walls within a mesh.
-const SAME_WAY: f64 = 0.7;
+pub(super) const SAME_WAY: f64 = 0.7;
 
 /// Memory for queries.
 #[derive(Default)]

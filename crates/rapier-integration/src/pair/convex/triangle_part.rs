@@ -8,11 +8,13 @@ use parry3d::shape::{HalfSpace, PackedFeatureId};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::strays::seam;
+use sbbk_core::volumes::Sphere;
 
-use super::contact::{NormalSource, PartContact};
+use super::contact::{KeptHull, NormalSource, PartContact, core_contact, core_support};
 use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, ray_length};
+use super::query::SAME_WAY;
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::ContactSummary;
@@ -50,6 +52,10 @@ struct Normals {
 /// Sine between the normals of a contact and its triangle below which the contact is no ghost.
 /// Higher: bodies stumble. Lower: flat contacts search for strays in vain.
 const UPRIGHT: f64 = 1.0e-3;
+
+/// Sine of a corner's direction up to which the corner counts as level. Higher: ghosts stay;
+/// lower: rounding of the normals of curved shapes counts.
+const LEVEL: f64 = 2.0e-3;
 
 impl TrianglePartPair<'_> {
     /// Returns the point of a contact in the frame of the mesh, and the distance up to which triangles
@@ -219,12 +225,7 @@ impl TrianglePartPair<'_> {
 
     /// Returns true if the triangle extends beyond a contact along its normal.
     pub(super) fn extends_beyond(&self, contact: &ConvexContact) -> bool {
-        /// Sine of a corner's direction up to which the corner counts as level. Higher: ghosts stay;
-        /// lower: rounding of the normals of curved shapes counts.
-        const LEVEL: f64 = 2.0e-3;
-        let ConvexContact { on_triangle, normal, .. } = *contact;
-        let corners = self.placed.in_part(self.corners).map(|corner| corner - on_triangle);
-        corners.iter().any(|corner| normal.dot(*corner) > LEVEL * corner.length())
+        extends_beyond(&self.placed.in_part(self.corners), contact)
     }
 
     /// Returns the contact along the normal of the triangle, for another contact of the part. `None` if the bodies do not cross
@@ -248,6 +249,31 @@ impl TrianglePartPair<'_> {
             is_crossing |= point.distance < 0.0;
         });
         is_crossing.then_some(contact.contact)
+    }
+
+    /// Returns the least deep contact that moves the part out of the wedge behind the planes of this triangle and another one:
+    /// over the edge of the wedge, or along the normal of the other triangle. `None` unless each triangle is behind
+    /// the other one, and the edge is sharp.
+    pub(super) fn contact_of_wedge(
+        &self,
+        other: [Vec3; 3],
+        hull: &KeptHull,
+    ) -> Option<ConvexContact> {
+        let Self { placed, part, corners, .. } = *self;
+        let triangles @ [own, other] = [corners, other].map(|corners| placed.in_part(corners));
+        let normals = [outward(&own, &other)?, outward(&other, &own)?];
+        let within = within_edge(&placed.extent.ball(), normals, [own[0], other[0]])?;
+        let is_parting = |contact: &ConvexContact| {
+            contact.distance < 0.0 && !triangles.iter().any(|t| extends_beyond(t, contact))
+        };
+        let over_edge = core_contact(&within, part.shape, hull, 0.0).filter(is_parting);
+        let [_, normal] = normals;
+        let on_shape = core_support(part.shape, hull, -normal)?;
+        let distance = normal.dot(on_shape - other[0]);
+        let on_triangle = on_shape - normal * distance;
+        let along_normal = ConvexContact { distance, normal, on_triangle, on_shape };
+        let is_over_edge = |over_edge: &ConvexContact| distance < over_edge.distance;
+        over_edge.filter(is_over_edge).or(Some(along_normal))
     }
 
     /// Returns a contact at a border with the normal of the face, if the part is on one side of the
@@ -288,4 +314,43 @@ impl TrianglePartPair<'_> {
         let on_triangle = on_shape - normal * distance;
         Some(ConvexContact { distance, normal, on_triangle, on_shape })
     }
+}
+
+/// Returns true if a triangle extends beyond a contact along its normal.
+fn extends_beyond(corners: &[DVec3; 3], contact: &ConvexContact) -> bool {
+    let ConvexContact { on_triangle, normal, .. } = *contact;
+    corners.iter().any(|corner| {
+        let way = corner - on_triangle;
+        normal.dot(way) > LEVEL * way.length()
+    })
+}
+
+/// Returns the unit normal of a triangle by its winding. `None` unless another one is behind it.
+fn outward([a, b, c]: &[DVec3; 3], other: &[DVec3; 3]) -> Option<DVec3> {
+    let normal = (b - a).cross(c - a).try_normalize()?;
+    let is_behind = |corner: &DVec3| normal.dot(corner - a) <= LEVEL * corner.distance(*a);
+    other.iter().all(is_behind).then_some(normal)
+}
+
+/// Returns a triangle that halves a wedge and ends at its edge. It reaches beyond a ball. `points` are on the sides with
+/// these normals. `None` if both push the [same way](SAME_WAY).
+fn within_edge(
+    ball: &Sphere,
+    normals @ [one, other]: [DVec3; 2],
+    points: [DVec3; 2],
+) -> Option<[DVec3; 3]> {
+    /// Radii of the ball up to which the triangle reaches. Higher: less exact. Lower: shapes pass its ends.
+    const FAR: f64 = 8.0;
+    if one.dot(other) >= SAME_WAY {
+        return None;
+    }
+    let along = one.cross(other);
+    let (centre, radius) = (ball.centre.as_dvec3(), f64::from(ball.radius));
+    let heights = [0, 1].map(|i| normals[i].dot(points[i] - centre));
+    // The point of the edge that is nearest to the centre.
+    let to_edge = heights[0] * other.cross(along) + heights[1] * along.cross(one);
+    let edge = centre + to_edge / along.length_squared();
+    let [along, inward] = [along.try_normalize()?, -(one + other).try_normalize()?];
+    let reach = FAR * radius;
+    Some([edge - reach * along, edge + reach * along, edge + reach * inward])
 }
