@@ -74,8 +74,8 @@ impl Surface {
             .side(triangle)
     }
 
-    /// True if other triangles have the contacts of a triangle: an earlier one with the same corners, in either winding, or those
-    /// at the sides of one without an area. A point has no contacts.
+    /// True if other triangles have the contacts of a triangle. An earlier one may have the same corners, in either winding. A
+    /// triangle without an area leaves its contacts to those at its sides. A point has none.
     #[inline]
     pub fn is_double(&self, triangle: u32) -> bool {
         self.doubles.contains(triangle)

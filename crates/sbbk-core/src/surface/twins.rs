@@ -5,7 +5,7 @@ use std::hash::BuildHasher;
 use glamx::Vec3;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
-use super::triangle::{area_vector, longest_side};
+use super::triangle::area_vector;
 use super::{PAIRED, SMALL_COMPONENT};
 use crate::collections::CompactIndices;
 
@@ -167,9 +167,10 @@ const ROUNDINGS: f64 = 4.0 * f32::EPSILON as f64;
 /// Returns true if a triangle has no area, up to rounding of its corners.
 pub fn is_flat(corners: &[Vec3; 3]) -> bool {
     let [a, b, c] = corners.map(|corner| corner.as_dvec3());
-    let (area, longest) = (area_vector(&[a, b, c]), longest_side(&[a, b, c]));
-    let magnitude = a.abs().max(b.abs()).max(c.abs()).max_element();
-    area.length() <= ROUNDINGS * magnitude * longest
+    let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+    let longest2 = sides.into_iter().fold(0.0, f64::max);
+    let slack = ROUNDINGS * a.abs().max(b.abs()).max(c.abs()).max_element();
+    area_vector(&[a, b, c]).length_squared() <= slack * slack * longest2
 }
 
 /// A place where vertices are one.

@@ -103,7 +103,7 @@ fn triangles_wound_the_other_way_are_turned() {
             let surface = is_analysed.then_some(&surface);
             let (mut wrong, mut walls) = (0, 0);
             for triangle in 0..soup.count() {
-                let is_turned = triangle as usize % nth == 0;
+                let is_turned = (triangle as usize).is_multiple_of(nth);
                 let right = if is_turned { Side::Turned } else { Side::Outer };
                 let found = found_side(surface, &soup, triangle, &memo);
                 wrong += u32::from(found != right);

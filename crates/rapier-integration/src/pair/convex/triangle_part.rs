@@ -251,8 +251,8 @@ impl TrianglePartPair<'_> {
         is_crossing.then_some(contact.contact)
     }
 
-    /// Returns the least deep contact that moves the part out of the wedge behind the planes of this triangle and another one:
-    /// over the edge of the wedge, or along the normal of the other triangle. `None` unless each triangle is behind
+    /// Returns the least deep contact that moves the part out of the wedge behind the planes of this triangle and another one. The
+    /// way leads over the edge of the wedge, or along the normal of the other triangle. `None` unless each triangle is behind
     /// the other one, and the edge is sharp.
     pub(super) fn contact_of_wedge(
         &self,

@@ -56,7 +56,7 @@ fn feature_of_segment(triangle: &[DVec3; 3], point: DVec3) -> Feature {
     let length = |i: &u8| edge(*i)[0].distance(edge(*i)[1]);
     let longest = (0..3).max_by(|i, j| length(i).total_cmp(&length(j))).unwrap_or_default();
     let [from, to] = edge(longest);
-    // Not a number if the triangle is a point.
+    // A point has no share.
     let share = (point - from).dot(to - from) / from.distance_squared(to);
     match share {
         NONE..=MOST => Feature::Edge(longest),

@@ -37,7 +37,7 @@ fn is_flat(mesh: &Soup, triangle: usize) -> bool {
     (b - a).cross(c - a).length() <= rounding * longest
 }
 
-/// The triangles with a side between the ends of a half-edge, except that of the half-edge.
+/// The other triangles with a side between the ends of a half-edge.
 fn others_at(mesh: &Soup, half_edge: usize) -> Vec<usize> {
     let [start, end, _] = corners(mesh, half_edge);
     let has_side = |other: &usize| {
