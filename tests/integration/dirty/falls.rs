@@ -11,13 +11,16 @@ use sbbk_testkit::scene::random::rotation;
 use super::world;
 
 /// Flat grounds at height 0.
-fn grounds() -> [(&'static str, SharedShape); 8] {
+fn grounds() -> [(&'static str, SharedShape); 9] {
     let floor = mesh::floor(20.0, 30);
     let slab = mesh::slab(Vec3::new(10.0, 0.5, 10.0), [30, 1, 30]).mapped(|v| v - 0.5 * Vec3::Y);
+    // Bodies fall on the cell in the middle.
+    let coarse = mesh::slab(Vec3::new(10.0, 0.5, 10.0), [7, 1, 7]).mapped(|v| v - 0.5 * Vec3::Y);
     let field = SharedShape::heightfield(Array2::repeat(31, 31, 0.0), Vec3::new(20.0, 1.0, 20.0));
     [
         ("slab", slab.shape()),
         ("slab inside out", mesh::turned_inside_out(slab.clone()).shape()),
+        ("slab with a turned cell", mesh::turned_near(&coarse, Vec3::ZERO, 2.1).shape()),
         ("sheet", floor.shape()),
         ("sheet that faces down", mesh::turned_inside_out(floor.clone()).shape()),
         ("sheet of any winding", mesh::random_winding(&floor, 1).shape()),

@@ -36,7 +36,7 @@ fn floors() -> Vec<(&'static str, Vec<Mesh>)> {
         ("uneven box", below(mesh::uneven_box(half_extents, [7, 4, 16, 1, 5, 3]))),
         ("box with a wall", below(mesh::walled_box(half_extents, 8))),
         ("skirted", mesh::skirted(&plain, -1.0)),
-        ("skirted, each ninth turned", mesh::turned(&mesh::skirted(&plain, -1.0), 9)),
+        ("skirted, turned cells", mesh::turned_near(&mesh::skirted(&plain, -1.0), Vec3::ZERO, 1.5)),
     ];
     floors.into_iter().map(|(name, floor)| (name, vec![floor])).collect()
 }

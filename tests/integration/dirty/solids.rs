@@ -36,7 +36,7 @@ fn solids() -> Vec<(&'static str, Mesh, [f32; 2])> {
         ("soup, 0.1 mm apart", mesh::unwelded(&even, 0.5e-4, 1), flat),
         ("each third twice", mesh::doubled(&even, 3), flat),
         ("slivers", mesh::with_slivers(&even, 3), flat),
-        ("each twentieth turned", mesh::turned(&even, 20), flat),
+        ("turned cells", mesh::turned_near(&even, Vec3::Y, 0.8), flat),
     ]
 }
 

@@ -82,10 +82,14 @@ pub fn random_winding(mesh: &Mesh, seed: u64) -> Mesh {
     wound
 }
 
-/// The mesh with each `nth` triangle wound the other way.
-pub fn turned(mesh: &Mesh, nth: usize) -> Mesh {
+/// The mesh with the triangles within `reach` of a point wound the other way.
+pub fn turned_near(mesh: &Mesh, point: Vec3, reach: f32) -> Mesh {
     let mut wound = mesh.clone();
-    wound.triangles.iter_mut().step_by(nth).for_each(|triangle| triangle.swap(1, 2));
+    for (index, triangle) in wound.triangles.iter_mut().enumerate() {
+        if mesh.corners(index).iter().all(|corner| corner.distance(point) < reach) {
+            triangle.swap(1, 2);
+        }
+    }
     wound
 }
 

@@ -19,8 +19,8 @@ mod shapes;
 
 pub use container::Mesh;
 pub use dirty::{
-    cube_ball, doubled, random_winding, skirted, strips, tiles, tube, turned, turned_inside_out,
-    two_sided, uneven_box, unwelded, vessel, walled_box, with_slivers,
+    cube_ball, doubled, random_winding, skirted, strips, tiles, tube, turned_inside_out,
+    turned_near, two_sided, uneven_box, unwelded, vessel, walled_box, with_slivers,
 };
 pub use helicopter::helicopter;
 pub use machine::{Gear, Rack, Thread, prism, revolved};
