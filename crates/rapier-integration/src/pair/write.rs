@@ -232,13 +232,7 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
                 let contact = members[member].contact;
                 let of = &contacts[contact as usize];
                 query.points(of, scratch, points);
-                let ContactPoints { normals, poses, .. } = *points;
-                patch_points.extend(points.points.iter().map(|&point| PatchPoint {
-                    point: named(point, of.0),
-                    contact,
-                    normals,
-                    poses,
-                }));
+                patch_points.extend(patch_points_of(points, of.0, contact));
             }
             let distance = |point: &PatchPoint| point.point.dist;
             let depths = patch_points.iter().map(distance).enumerate();
@@ -430,6 +424,17 @@ fn name(feature: PackedFeatureId, subshape: u32) -> PackedFeatureId {
     const NUMBER: u32 = (1 << 30) - 1;
     let number = (feature.0 & NUMBER).wrapping_add(subshape.wrapping_shl(8)) & NUMBER;
     PackedFeatureId(feature.0 & !NUMBER | number)
+}
+
+/// Returns the points of a contact, with the names that the manifold has.
+fn patch_points_of(
+    points: &ContactPoints,
+    subshapes: [u32; 2],
+    contact: u32,
+) -> impl Iterator<Item = PatchPoint> {
+    let ContactPoints { normals, poses, .. } = *points;
+    let of = move |&point| PatchPoint { point: named(point, subshapes), contact, normals, poses };
+    points.points.iter().map(of)
 }
 
 #[cfg(test)]

@@ -21,46 +21,58 @@ pub(super) fn triangles_near(
     shape: ConvexShape<'_>,
     mesh: &MeshView<'_>,
     margin: Real,
-    mut counters: impl Counters,
-    mut found: impl FnMut(u32) -> ControlFlow<()>,
+    counters: impl Counters,
+    found: impl FnMut(u32) -> ControlFlow<()>,
 ) {
-    let (tested, magnitude) = (Cell::new(0), mesh.magnitude());
-    let count = || tested.set(tested.get() + 1);
-    let _ = if let ConvexShape::HalfSpace(half_space) = shape {
-        let (normal, height) = plane(&placed.placement, half_space, magnitude, margin);
-        let is_below = |node: TestedBox| {
-            count();
-            lowest(node, normal) <= height
-        };
-        mesh.near(is_below).try_for_each(&mut found)
-    } else if let ConvexShape::Ball(ball) = shape {
-        if !placed.placement.is_finite() {
-            return;
+    let magnitude = mesh.magnitude();
+    match shape {
+        ConvexShape::HalfSpace(half_space) => {
+            let (normal, height) = plane(&placed.placement, half_space, magnitude, margin);
+            visit(mesh, |node| lowest(node, normal) <= height, counters, found);
         }
-        // Allows for the rounding of some ten operations with the centre and the boxes.
-        let centre = placed.inverse.translation.as_vec3();
-        let (reach, size) = (ball.radius + margin, magnitude + centre.abs().max_element());
-        let beyond = (reach + gamma(16) * (size + reach)).max(Real::MIN_POSITIVE.sqrt());
-        let is_near = |node: TestedBox| {
-            count();
-            let (middle, extent) = node.centre_extent();
-            let beside = ((middle - centre).abs() - extent).max(Vec3::ZERO);
-            beside.length_squared() <= beyond * beyond
-        };
-        mesh.near(is_near).try_for_each(&mut found)
-    } else {
-        let (min, max, radius) = placed.extent.bounds();
-        let size = min.abs().max(max.abs()).max_element();
-        let reach = ((f64::from(margin) + f64::from(radius)) as Real).next_up();
-        let test = BoxTest::new([magnitude, size], &placed.inverse, reach);
-        let near = test.of(TestedBox::new(min, max));
-        let meets = |node: TestedBox| {
-            count();
-            near.meets(node)
-        };
-        mesh.near(meets).try_for_each(&mut found)
+        ConvexShape::Ball(_) if !placed.placement.is_finite() => {}
+        ConvexShape::Ball(ball) => {
+            let centre = placed.inverse.translation.as_vec3();
+            visit(mesh, near_ball(centre, ball.radius + margin, magnitude), counters, found);
+        }
+        _ => {
+            let (min, max, radius) = placed.extent.bounds();
+            let size = min.abs().max(max.abs()).max_element();
+            let reach = ((f64::from(margin) + f64::from(radius)) as Real).next_up();
+            let test = BoxTest::new([magnitude, size], &placed.inverse, reach);
+            let near = test.of(TestedBox::new(min, max));
+            visit(mesh, |node| near.meets(node), counters, found);
+        }
+    }
+}
+
+/// Calls `found` with the triangles whose boxes and those of their ancestors pass a test, until it breaks.
+#[inline(always)]
+fn visit(
+    mesh: &MeshView<'_>,
+    is_near: impl Fn(TestedBox) -> bool,
+    mut counters: impl Counters,
+    found: impl FnMut(u32) -> ControlFlow<()>,
+) {
+    let tested = Cell::new(0);
+    let counted = |node: TestedBox| {
+        tested.set(tested.get() + 1);
+        is_near(node)
     };
+    let _ = mesh.near(counted).try_for_each(found);
     counters.aabb_tests(tested.get());
+}
+
+/// Returns a test for boxes within reach of a point.
+fn near_ball(centre: Vec3, reach: Real, magnitude: Real) -> impl Fn(TestedBox) -> bool {
+    // Allows for the rounding of some ten operations with the centre and the boxes.
+    let size = magnitude + centre.abs().max_element();
+    let beyond = (reach + gamma(16) * (size + reach)).max(Real::MIN_POSITIVE.sqrt());
+    move |node| {
+        let (middle, extent) = node.centre_extent();
+        let beside = ((middle - centre).abs() - extent).max(Vec3::ZERO);
+        beside.length_squared() <= beyond * beyond
+    }
 }
 
 /// Returns a lower bound of the distance between a box of a mesh and a part. `around` is the box around
