@@ -79,11 +79,11 @@ pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
 pub(crate) const BEHIND: Real = 0.9;
 
 /// Returns the nearest triangle of a mesh, the nearest point, and the cosine between the direction to `point` and the inward
-/// normal. The cosine is 0 for a point on the mesh. Walls within are left out.
+/// normal. The cosine is 0 for a point on the mesh.
 pub(super) fn nearest(
     mesh: &TriMesh,
     point: Vec3,
-    is_wall: impl Fn(u32) -> bool,
+    is_left_out: impl Fn(u32) -> bool,
 ) -> Option<(u32, Vec3, Real)> {
     let (triangle, (_, nearest)) = mesh.bvh().find_best(
         Real::MAX,
@@ -91,7 +91,7 @@ pub(super) fn nearest(
         |triangle, least| {
             let nearest = mesh.triangle(triangle).project_local_point(point, false).point;
             let distance = nearest.distance(point);
-            (distance < least && !is_wall(triangle)).then_some((distance, nearest))
+            (distance < least && !is_left_out(triangle)).then_some((distance, nearest))
         },
     )?;
     let away = (point - nearest).normalize_or_zero();
