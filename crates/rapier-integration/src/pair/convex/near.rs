@@ -46,7 +46,7 @@ pub(super) fn triangles_near(
     }
 }
 
-/// Calls `found` with the triangles whose boxes and those of their ancestors pass a test, until it breaks.
+/// Calls `found` with the triangles whose boxes pass a test, until it breaks. Nodes around them must pass as well.
 #[inline(always)]
 fn visit(
     mesh: &MeshView<'_>,
