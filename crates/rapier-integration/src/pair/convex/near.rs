@@ -46,7 +46,7 @@ pub(super) fn triangles_near(
     }
 }
 
-/// Calls `found` with the triangles whose boxes pass a test, until it breaks. Nodes around them must pass as well.
+/// Calls `found` with triangles until `found` breaks. Their boxes and the nodes around them pass a test.
 #[inline(always)]
 fn visit(
     mesh: &MeshView<'_>,
