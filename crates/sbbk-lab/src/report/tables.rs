@@ -60,20 +60,65 @@ impl Table {
     }
 }
 
+/// Columns of a printed table at most, unless its words are longer.
+const MOST_COLUMNS: usize = 100;
+
+/// Spaces between two columns.
+const GAP: usize = 3;
+
+impl Table {
+    /// Returns the widths of the columns. The widest ones are narrowed until the table fits, but not below their words.
+    fn widths(&self) -> Vec<usize> {
+        let longest = |column: usize, length: fn(&str) -> usize| {
+            self.lines.iter().map(|line| length(&line[column])).max().unwrap_or(0)
+        };
+        let word = |cell: &str| cell.split(' ').map(|word| word.chars().count()).max().unwrap_or(0);
+        let columns = 0..self.lines[0].len();
+        let least: Vec<usize> = columns.clone().map(|column| longest(column, word)).collect();
+        let mut widths: Vec<usize> =
+            columns.map(|column| longest(column, |cell| cell.chars().count())).collect();
+        while widths.iter().sum::<usize>() + GAP * (widths.len() - 1) > MOST_COLUMNS {
+            let can_shrink = (0..widths.len()).filter(|&column| widths[column] > least[column]);
+            let Some(widest) = can_shrink.max_by_key(|&column| widths[column]) else { break };
+            widths[widest] -= 1;
+        }
+        widths
+    }
+}
+
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = |column: usize| {
-            let cells = self.lines.iter().map(|line| line[column].chars().count());
-            cells.max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..self.lines[0].len()).map(width).collect();
+        let widths = self.widths();
         self.lines.iter().try_for_each(|line| {
-            write!(f, "{:1$}", line[0], widths[0])?;
-            let mut numbers = line.iter().zip(&widths).skip(1);
-            numbers.try_for_each(|(cell, width)| write!(f, "   {cell:>width$}"))?;
-            writeln!(f)
+            let cells: Vec<Vec<String>> =
+                line.iter().zip(&widths).map(|(cell, width)| wrapped(cell, *width)).collect();
+            let height = cells.iter().map(Vec::len).max().unwrap_or(0);
+            (0..height).try_for_each(|part| {
+                let text = |column: usize| cells[column].get(part).map_or("", |part| part);
+                let mut printed = format!("{:1$}", text(0), widths[0]);
+                for (column, width) in widths.iter().enumerate().skip(1) {
+                    printed += &format!("{:GAP$}{:>width$}", "", text(column));
+                }
+                writeln!(f, "{}", printed.trim_end())
+            })
         })
     }
+}
+
+/// Breaks a text between words into lines of a width. Longer words have a line of their own.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let last = lines.last_mut().expect("there is one");
+        if last.is_empty() {
+            *last += word;
+        } else if last.chars().count() + 1 + word.chars().count() <= width {
+            *last = format!("{last} {word}");
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
 }
 
 /// Lines of a table. The first line of a description is the header, in which `name = backend` gives
@@ -236,4 +281,16 @@ fn placeholders_become_numbers() {
                     | both | 1.00 | 2,000 |\n| first | 4.00x | 4.00x |\n";
     assert_eq!(table.markdown(), expected);
     assert_eq!(table.to_string().lines().nth(1), Some("of 1     8.00    2.00"));
+}
+
+/// Would catch words that are cut, and tables wider than a terminal.
+#[test]
+fn wide_tables_are_wrapped_between_words() {
+    let cell = |word: &str, count: usize| vec![word; count].join(" ");
+    let line = |count| vec![cell("label", count), cell("12", count), "3".to_owned()];
+    let table = Table { name: "t", lines: vec![line(1), line(30)] };
+    let text = table.to_string();
+    assert!(text.lines().all(|line| line.chars().count() <= MOST_COLUMNS), "{text}");
+    assert_eq!(text.matches("label").count(), 31);
+    assert_eq!(text.matches("12").count(), 31);
 }
