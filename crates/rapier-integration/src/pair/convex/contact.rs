@@ -13,6 +13,10 @@ use sbbk_core::contact::convex::{
 
 use super::shape::ConvexShape;
 
+/// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
+/// stumble over walls within a mesh.
+pub(super) const SAME_WAY: f64 = 0.7;
+
 /// The contact of a triangle and a part without its rounding radius, in the frame of the part.
 #[derive(Copy, Clone)]
 pub(crate) struct PartContact {

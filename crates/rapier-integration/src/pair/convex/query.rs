@@ -10,7 +10,7 @@ use sbbk_core::surface::{Side, SurfaceKind};
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
 use sbbk_core::volumes::rounding::gamma;
 
-use super::contact::{PartContact, ball_contact, core_contact};
+use super::contact::{PartContact, SAME_WAY, ball_contact, core_contact};
 use super::ghosts::GhostContacts;
 use super::near::triangles_near;
 use super::pair::ConvexPair;
@@ -56,10 +56,6 @@ pub(crate) struct ConvexQuery<'q> {
     /// Surface of the mesh, for push-outs and walls within the mesh.
     pub(super) surface: Option<LazySurface<'q>>,
 }
-
-/// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
-/// stumble over walls within a mesh.
-pub(super) const SAME_WAY: f64 = 0.7;
 
 /// Memory for queries.
 #[derive(Default)]

@@ -10,11 +10,10 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::strays::seam;
 use sbbk_core::volumes::Sphere;
 
-use super::contact::{KeptHull, NormalSource, PartContact, core_contact, core_support};
+use super::contact::{KeptHull, NormalSource, PartContact, SAME_WAY, core_contact, core_support};
 use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, ray_length};
-use super::query::SAME_WAY;
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::ContactSummary;
