@@ -12,7 +12,7 @@ use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
     Around, Facets, MinimumCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
-    hangs, is_flat, minimum_cones, place, side,
+    hangs, is_flat, minimum_cones, place, side, sides,
 };
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -330,10 +330,7 @@ impl Neighbour {
 /// Returns whether a sliver [hangs](hangs()). `None` for other triangles.
 fn sliver(mesh: &TriMesh, triangle: u32) -> Option<bool> {
     let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
-    let sides = |triangle: u32| {
-        let [a, b, c] = corners(triangle).map(place);
-        [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
-    };
+    let sides = |triangle: u32| sides(corners(triangle).map(place));
     if !is_flat(&corners(triangle)) {
         return None;
     }

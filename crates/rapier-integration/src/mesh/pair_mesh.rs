@@ -199,15 +199,14 @@ impl<'a> LazySurface<'a> {
     /// Returns the triangle nearest to a point, the nearest point, and the cosine between the direction to `point`
     /// and the inward normal. Leaves out triangles that do not bound the body of a closed mesh.
     pub(crate) fn nearest(&self, point: Vec3) -> Option<(u32, Vec3, Real)> {
-        let is_sheet = self.kind() == SurfaceKind::Sheet;
+        let kind = self.kind();
         let bounds_nothing = |triangle| match self.around(triangle).side {
             Side::Inner => true,
-            Side::Sheet => !is_sheet,
+            Side::Sheet => kind != SurfaceKind::Sheet,
             Side::Outer | Side::Turned => false,
         };
         let (triangle, nearest, behind) = nearest(self.view.mesh, point, bounds_nothing)?;
-        let is_turned =
-            self.kind() == SurfaceKind::Solid && self.facets().side(triangle) == Side::Turned;
+        let is_turned = kind == SurfaceKind::Solid && self.facets().side(triangle) == Side::Turned;
         Some((triangle, nearest, if is_turned { -behind } else { behind }))
     }
 

@@ -20,7 +20,7 @@ pub use one_ring::Around;
 pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
 pub use spread::minimum_cones;
-pub use twins::{Place, hangs, is_flat, place};
+pub use twins::{Place, hangs, is_flat, place, sides};
 
 use glamx::Vec3;
 use rustc_hash::FxHashMap;

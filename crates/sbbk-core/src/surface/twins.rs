@@ -128,8 +128,7 @@ impl Slivers {
             return slivers;
         }
         let sides = |triangle: u32| {
-            let [a, b, c] = triangles[triangle as usize].map(|corner| welded[corner as usize]);
-            [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
+            sides(triangles[triangle as usize].map(|corner| welded[corner as usize]))
         };
         // Half-edges of each side: of triangles without an area, and of all.
         let mut counts = FxHashMap::<[u32; 2], [u32; 2]>::default();
@@ -148,6 +147,11 @@ impl Slivers {
         }
         slivers
     }
+}
+
+/// Returns the ends of the sides of a triangle, the lesser end first.
+pub fn sides<End: Copy + Ord>([a, b, c]: [End; 3]) -> [[End; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
 }
 
 /// Returns whether a triangle without an area hangs: it does not fill a gap between three others. `None` if it is a segment that

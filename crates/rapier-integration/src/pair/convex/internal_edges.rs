@@ -175,13 +175,10 @@ impl ConvexQuery<'_> {
         let hull = self.part_data.hull(part);
         let is_solid =
             || self.surface.as_ref().is_some_and(|known| known.kind() == SurfaceKind::Solid);
-        let is_deeper = |least: &PartContact, found: &PartContact| {
-            least.contact.distance < found.contact.distance
-        };
-        ghosts.nearby.iter().fold(face, |least, &other| {
-            let (of_other, PartContact { contact, .. }) = contacts[other as usize];
-            let [triangle, _] = self.pair.mesh_place.swap(of_other);
-            let found = self.with_pair(of, scratch, |pair| {
+        let least = self.with_pair(of, scratch, |pair| {
+            let ways = ghosts.nearby.iter().flat_map(|&other| {
+                let (of_other, PartContact { contact, .. }) = contacts[other as usize];
+                let [triangle, _] = self.pair.mesh_place.swap(of_other);
                 let is_parting = ghosts.is_true(other) && !pair.extends_beyond(&contact);
                 let parting = is_parting.then(|| own.with_normal_of(&contact));
                 // Against all faces a wedge leads as they do.
@@ -191,10 +188,12 @@ impl ConvexQuery<'_> {
                 });
                 [parting, wedge.map(|contact| PartContact { contact, ..own })]
             });
-            found.into_iter().flatten().flatten().fold(least, |least, found| {
-                let is_less = least.as_ref().is_none_or(|least| is_deeper(least, &found));
-                if is_less && found.contact.distance < 0.0 { Some(found) } else { least }
-            })
-        })
+            let is_deep = |way: &PartContact| way.contact.distance < 0.0;
+            let less = |least: PartContact, way: PartContact| {
+                if least.contact.distance < way.contact.distance { way } else { least }
+            };
+            face.into_iter().chain(ways.flatten().filter(is_deep)).reduce(less)
+        });
+        least.unwrap_or(face)
     }
 }
