@@ -13,7 +13,7 @@ fn step(scene: &mut SceneWorld, steps: usize) {
     (0..steps).for_each(|_| scene.world.step());
 }
 
-/// The same scene with SBBK.
+/// Adds SBBK to a scene.
 fn with_sbbk(mut scene: SceneWorld) -> SceneWorld {
     scene.world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
     scene

@@ -52,7 +52,7 @@ impl LeafTest {
     }
 
     /// Like [`survivors`](Self::survivors). With `lateral`, leaves out pairs whose nearest points are beside one of the
-    /// triangles. `may_reject` must agree, and takes the leaf of that triangle (0 or 1) and the lane.
+    /// triangles. `may_reject` returns true for a triangle whose pairs may be left out, by its leaf (0 or 1) and lane.
     #[inline]
     pub fn survivors_in_front(
         &self,

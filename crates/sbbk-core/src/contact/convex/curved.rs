@@ -401,9 +401,8 @@ impl LevelEdge {
     /// The place nearest to an endless slope, which comes `lean` nearer to the axis for each unit up. `up` is the height of
     /// the edge.
     ///
-    /// Across the slope the distance varies with `√(a² + l² t²) + lean y t`. Here `t` starts where the
-    /// edge is nearest to the axis, at distance `a`; `l` is the level length and `y` the height of the
-    /// edge. The minimum is at `l² t = -lean y √(a² + l² t²)`. Steeper edges have none.
+    /// Across the slope the distance varies with `√(a² + l² t²) + lean y t`. The edge has the level length `l` and the height
+    /// `y`. It is nearest to the axis at `t = 0`, at distance `a`. The minimum is at `l² t = -lean y √(a² + l² t²)`. Steeper edges have none.
     #[inline(always)]
     fn near_slope(&self, up: f64, lean: f64) -> f64 {
         let fall = -lean * up;
