@@ -241,6 +241,11 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         !is_wall
     }
 
+    /// True if all components are known to be closed.
+    fn is_closed(&self) -> bool {
+        self.open.is_some_and(TriangleSet::is_empty)
+    }
+
     /// True if the component of a triangle is known to be closed.
     fn is_of_closed(&self, triangle: u32) -> bool {
         self.open.is_some_and(|open| !open.contains(triangle))
@@ -409,6 +414,10 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
     /// What the rays find if only triangles count for which `counts` is true.
     fn side(&self, counts: impl Fn(u32) -> bool) -> Side {
         let Some(front) = self.winding(0, &counts) else { return Side::Outer };
+        // One triangle lies between the rays, so the body is behind.
+        if front == 0 && self.mesh.is_closed() {
+            return Side::Outer;
+        }
         let is_behind = self.winding(1, &counts).is_none_or(|back| back >= 1);
         match (front, is_behind || front >= 1 && self.have_ties()) {
             (1.., true) => Side::Inner,
