@@ -31,10 +31,7 @@ impl SbbkDispatcher {
         };
         let (mesh, other, mesh_place) = match [g1, g2].map(rigid_mesh) {
             [Some(mesh1), Some(mesh2)] => {
-                let meshes = [mesh1, mesh2];
-                if !self.config.kinds.meshes {
-                    return None;
-                }
+                let meshes = self.config.kinds.meshes.then_some([mesh1, mesh2])?;
                 // Before all else: most pairs that a host asks about are apart.
                 return match apart {
                     Some((distance, apart)) if !are_near(meshes, pos12, distance) => answer(apart),
@@ -49,11 +46,10 @@ impl SbbkDispatcher {
         if !self.config.kinds.convex_shapes || is_parrys || !other.is_convex() {
             return None;
         }
-        if let Some((distance, apart)) = apart {
-            let in_mesh = mesh_place.shape_in_mesh(pos12);
-            if !is_near(mesh, other, &in_mesh, distance) {
-                return answer(apart);
-            }
+        if let Some((distance, apart)) = apart
+            && !is_near(mesh, other, &mesh_place.shape_in_mesh(pos12), distance)
+        {
+            return answer(apart);
         }
         let convex = ConvexShape::of(other)?;
         let [mesh] = self.view([mesh])?;

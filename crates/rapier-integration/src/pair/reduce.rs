@@ -150,8 +150,17 @@ fn by_depth(a: &Member, b: &Member) -> Ordering {
 
 impl Reduction {
     /// Assigns contacts to patches and removes those that no patch needs. The members of a patch
-    /// follow each other, the deepest first.
-    pub(super) fn reduce(&mut self, plan: PatchPlan) {
+    /// follow each other, the deepest first. Contacts without a summary count as absent.
+    pub(super) fn reduce(
+        &mut self,
+        plan: PatchPlan,
+        summaries: impl Iterator<Item = Option<ContactSummary>>,
+    ) {
+        let members = (0..)
+            .zip(summaries)
+            .filter_map(|(contact, summary)| Some(Member { summary: summary?, contact, patch: 0 }));
+        self.members.clear();
+        self.members.extend(members);
         self.group_by_normal(plan);
         self.split_by_place(plan);
     }
@@ -357,12 +366,7 @@ mod tests {
     /// Contacts divided up: for each by its place the number of its patch, in order.
     fn patches(summaries: &[ContactSummary], plan: PatchPlan) -> Vec<(u32, u32)> {
         let mut patches = Reduction::default();
-        patches.members.extend((0..).zip(summaries).map(|(contact, &summary)| Member {
-            summary,
-            contact,
-            patch: 0,
-        }));
-        patches.reduce(plan);
+        patches.reduce(plan, summaries.iter().copied().map(Some));
         patches.members.iter().map(|member| (member.contact, member.patch)).collect()
     }
 

@@ -14,7 +14,7 @@ use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
 use super::query::{ContactPoints, PairQuery, QueryMemory};
-use super::reduce::{MOST_POINTS, Member, PatchPlan, PatchPoint, Reduction};
+use super::reduce::{MOST_POINTS, PatchPlan, PatchPoint, Reduction};
 use super::state::HighWaterMark;
 
 /// Spare manifolds that a thread keeps, of some 500 bytes each. Higher: more memory; lower: allocations
@@ -216,12 +216,8 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         plan: PatchPlan,
     ) {
         let QueryMemory { scratch, contacts, reduction, points, .. } = memory;
-        reduction.members.clear();
-        reduction.members.extend((0..).zip(&*contacts).filter_map(|(index, contact)| {
-            let summary = query.summary(contact, scratch, points)?;
-            Some(Member { summary, contact: index, patch: 0 })
-        }));
-        reduction.reduce(plan);
+        let summary = |contact| query.summary(contact, scratch, points);
+        reduction.reduce(plan, contacts.iter().map(summary));
         self.list_old_points();
         let Reduction { members, places, points: patch_points, beyond, .. } = reduction;
         for members in members.chunk_by(|a, b| a.patch == b.patch) {
@@ -284,12 +280,7 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
             // The deepest one also where cones have left no unit vector.
             let is_of_normal = *i == deepest || normals[0].dot(normal1) >= one_normal;
             if is_of_normal {
-                let old_points = &mut self.pool.old_points;
-                let old = find_old(point, normal1, part, old_points, within);
-                let data = old.map_or_else(C::default, |old| {
-                    old_points[old].is_taken = true;
-                    old_points[old].point.data
-                });
+                let data = take_nearest(point, normal1, part, &mut self.pool.old_points, within);
                 manifold.points.push(with_data(point, data));
             }
             !is_of_normal
@@ -383,6 +374,20 @@ fn part_at(has_pose: [bool; 2], [subshape1, subshape2]: [u32; 2]) -> u32 {
 fn of_part<T>(list: &[T], part: u32, part_of: impl Fn(&T) -> u32) -> Range<usize> {
     let first = list.partition_point(|one| part_of(one) < part);
     first..first + list[first..].partition_point(|one| part_of(one) == part)
+}
+
+/// Returns the data of the old point that [`find_old`] finds, which is taken then; empty data if it finds none.
+fn take_nearest<C: Copy + Default>(
+    point: &TrackedContact<()>,
+    normal: Vec3,
+    part: u32,
+    old_points: &mut [OldPoint<C>],
+    within: Real,
+) -> C {
+    find_old(point, normal, part, old_points, within).map_or_else(C::default, |old| {
+        old_points[old].is_taken = true;
+        old_points[old].point.data
+    })
 }
 
 /// Returns the index of the old point with the features of `point`, or else of the nearest one with its direction,

@@ -59,8 +59,32 @@ impl<F: Facets> Around<F> {
         if normal.dot(direction).powi(2) < least * normal.length_squared() {
             return false;
         }
-        let mut slopes = Slopes::default();
-        let mut bend = Bend::from(normal);
+        let (rise, bend, signs) = self.first_slopes(triangle, feature, (direction, most), normal);
+        if rise > most * most || bend.is_some_and(|bend| bend.is_exceeded(rise, most)) {
+            return false;
+        }
+        if bend.is_some() && self.facets.is_whole(triangle, feature) {
+            return !self.leads_in(triangle, feature, direction, &signs);
+        }
+        let place = contact.map(|(place, _)| place);
+        let slopes = self.all_slopes(triangle, feature, direction, place);
+        // The memory is for triangles of all sides.
+        (!self.is_solid() || slopes.height >= 0.0)
+            && (slopes.rise <= FLAT * FLAT
+                || !self.is_exceeded(triangle, feature, slopes, most, place))
+    }
+
+    /// Returns the rise of a one-ring towards a direction, its bend from a plane, and the signs of its heights. The walk ends
+    /// at a rise above `most`. After [`LONG`] triangles there is no bend.
+    #[inline(always)]
+    fn first_slopes(
+        &self,
+        triangle: u32,
+        feature: Feature,
+        (direction, most): (DVec3, f64),
+        normal: DVec3,
+    ) -> (f64, Option<Bend>, Signs) {
+        let (mut slopes, mut bend) = (Slopes::default(), Bend::from(normal));
         let (mut count, mut signs) = (0, Signs::default());
         self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
             for (edge, is_new) in [(u, are_new[0]), (v, are_new[1])] {
@@ -76,19 +100,7 @@ impl<F: Facets> Around<F> {
             let is_over = slopes.rise > most * most || count > LONG;
             if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        let is_long = count > LONG;
-        if slopes.rise > most * most || !is_long && bend.is_exceeded(slopes.rise, most) {
-            return false;
-        }
-        if !is_long && self.facets.is_whole(triangle, feature) {
-            return !self.leads_in(triangle, feature, direction, &signs);
-        }
-        let place = contact.map(|(place, _)| place);
-        let slopes = self.all_slopes(triangle, feature, direction, place);
-        // The memory is for triangles of all sides.
-        (!self.is_solid() || slopes.height >= 0.0)
-            && (slopes.rise <= FLAT * FLAT
-                || !self.is_exceeded(triangle, feature, slopes, most, place))
+        (slopes.rise, (count <= LONG).then_some(bend), signs)
     }
 
     /// Returns true if a triangle that touches a place on a triangle rises towards a unit direction, by a slope whose

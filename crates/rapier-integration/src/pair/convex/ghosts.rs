@@ -139,7 +139,12 @@ impl GhostContacts {
                 self.on_faces.push(contact);
             }
         }
-        for contact in 0..contacts.len() {
+        self.follow_sources();
+    }
+
+    /// Replaces each source by the last one of its chain.
+    fn follow_sources(&mut self) {
+        for contact in 0..self.sources.len() {
             let mut source = self.sources[contact];
             while self.sources[source as usize] != source {
                 source = self.sources[source as usize];

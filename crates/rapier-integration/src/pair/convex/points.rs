@@ -21,6 +21,9 @@ pub(super) struct PointPair {
     pub(super) features: [PackedFeatureId; 2],
 }
 
+/// Features of closest points.
+const UNNAMED: [PackedFeatureId; 2] = [PackedFeatureId::UNKNOWN; 2];
+
 /// Calls `found` with the contact points of a triangle and a shape with polygonal features: closest
 /// points, and corners of the overlap of the triangle and the facing feature.
 ///
@@ -33,8 +36,7 @@ pub(super) fn contact_points(
     mut found: impl FnMut(PointPair),
 ) {
     let ConvexContact { distance, on_triangle, on_shape, .. } = contact.contact;
-    let unnamed = [PackedFeatureId::UNKNOWN; 2];
-    let closest = PointPair { on_triangle, on_shape, distance, features: unnamed };
+    let closest = PointPair { on_triangle, on_shape, distance, features: UNNAMED };
     if contact.source == NormalSource::PushOut {
         return found(closest);
     }
@@ -57,23 +59,23 @@ pub(super) fn contact_points(
         }
         has_closest |= point.distance <= distance + slack;
         let distance = if is_own { point.distance.max(distance) } else { point.distance };
-        let [of_triangle, of_shape] = point.features;
-        let features = [feature_id(&TRIANGLE, of_triangle), feature_id(&feature, of_shape)];
-        let FeaturePoint { on_triangle, on_shape, .. } = *point;
-        found(PointPair { on_triangle, on_shape, distance, features });
+        found(PointPair { distance, ..named(point, &feature) });
     }
     // Shapes other than cuboids may touch beside the corners of their features, which for a disc is a
     // square: they need the closest points, too.
     let is_cuboid = matches!(shape, ConvexShape::Cuboid(_));
     if is_own && (!is_cuboid || !has_closest) {
         found(closest);
-    } else if is_neighbours
-        && !is_cuboid
-        && let Some(distance) = height(corners, on_shape, normal)
-    {
-        let on_triangle = on_shape - normal * distance;
-        found(PointPair { on_triangle, on_shape, distance, features: unnamed });
+    } else if is_neighbours && !is_cuboid {
+        on_face(corners, on_shape, normal).into_iter().for_each(found);
     }
+}
+
+/// Names the features of a point. `of_shape` is the clipped feature of the shape.
+fn named(point: &FeaturePoint, of_shape: &PolygonalFeature) -> PointPair {
+    let FeaturePoint { on_triangle, on_shape, distance, features: [one, two], .. } = *point;
+    let features = [feature_id(&TRIANGLE, one), feature_id(of_shape, two)];
+    PointPair { on_triangle, on_shape, distance, features }
 }
 
 /// Returns the feature of a shape that faces a direction at a point.
@@ -100,13 +102,18 @@ fn feature_id(polygon: &PolygonalFeature, feature: Feature) -> PackedFeatureId {
     }
 }
 
-/// Returns the distance of a point from a triangle along a normal; `None` beside the triangle.
-fn height(&[a, b, c]: &[DVec3; 3], point: DVec3, normal: DVec3) -> Option<f64> {
+/// Returns a point of the shape with the point of the triangle along a normal; `None` beside the triangle.
+fn on_face(&[a, b, c]: &[DVec3; 3], on_shape: DVec3, normal: DVec3) -> Option<PointPair> {
     let face = (b - a).cross(c - a);
-    let height = (point - a).dot(face) / normal.dot(face);
-    let foot = point - normal * height;
-    let is_beside = |from: DVec3, to: DVec3| (to - from).cross(foot - from).dot(face) >= 0.0;
-    (is_beside(a, b) && is_beside(b, c) && is_beside(c, a)).then_some(height)
+    let distance = (on_shape - a).dot(face) / normal.dot(face);
+    let on_triangle = on_shape - normal * distance;
+    let is_beside = |from: DVec3, to: DVec3| (to - from).cross(on_triangle - from).dot(face) >= 0.0;
+    (is_beside(a, b) && is_beside(b, c) && is_beside(c, a)).then_some(PointPair {
+        on_triangle,
+        on_shape,
+        distance,
+        features: UNNAMED,
+    })
 }
 
 /// Any triangle, for the ids of its features. Stored: Parry's constructor takes longer than the clip.
