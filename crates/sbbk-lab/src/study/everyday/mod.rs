@@ -197,7 +197,10 @@ impl Worlds<'_> {
             Group::Pile => self.measure(&[scenes::pile(plan.heads, plan.steps)]),
             Group::Fine => {
                 let tori = plan.tubes.iter().map(|&tube| scenes::tori(tube, plan.steps));
-                self.measure(&tori.chain([scenes::parts(plan.steps)]).collect::<Vec<_>>());
+                let coarsest = plan.tubes.iter().min();
+                let parts = coarsest.map(|&tube| scenes::decomposed_tori(tube, plan.steps));
+                let parts = parts.into_iter().chain([scenes::parts(plan.steps)]);
+                self.measure(&tori.chain(parts).collect::<Vec<_>>());
             }
             #[cfg(feature = "parallel")]
             Group::Threads => self.threads(),

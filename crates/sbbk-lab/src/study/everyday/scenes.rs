@@ -273,6 +273,25 @@ pub(super) fn tori(tube: u32, steps: usize) -> Everyday<'static> {
     named(FINE, "30 tori in a pile", triangles, steps, build)
 }
 
+/// The pile of [`tori`] with the convex parts of a torus in place of its mesh, as games decompose it.
+pub(super) fn decomposed_tori(tube: u32, steps: usize) -> Everyday<'static> {
+    let pile = MonkeyPile::of(30, mesh::torus(1.0, 0.4, 3 * tube, tube));
+    let start = Instant::now();
+    let parts = SharedShape::convex_decomposition(&pile.mesh.vertices, &pile.mesh.triangles);
+    let load = start.elapsed().as_secs_f64();
+    let count = parts.as_compound().map_or(1, |parts| parts.shapes().len());
+    let (name, triangles) = ("30 tori of convex parts in a pile", pile.mesh.triangle_count());
+    let mut scene = named(FINE, name, triangles, steps, move || {
+        let mut world = pile.build().world;
+        let meshes = world.colliders.iter_mut().map(|(_, collider)| collider);
+        let meshes = meshes.filter(|collider| collider.shape().as_trimesh().is_some());
+        meshes.for_each(|collider| collider.set_shape(parts.clone()));
+        Driven::alone(world)
+    });
+    scene.row = scene.row.with("parts", count).with("load_seconds", load);
+    scene
+}
+
 /// A torus that slides along another one, both with so many segments around the tube.
 #[cfg(feature = "parallel")]
 pub(super) fn two_tori(tube: u32, steps: usize) -> Everyday<'static> {
