@@ -69,6 +69,11 @@ impl Bodies {
         (0..count).for_each(|_| self.world.step());
     }
 
+    /// Number of bodies that are not asleep.
+    pub fn awake(&self) -> usize {
+        self.handles.iter().filter(|&&body| !self.world.bodies[body].is_sleeping()).count()
+    }
+
     pub fn poses(&self) -> Vec<Pose> {
         self.handles.iter().map(|&body| *self.world.bodies[body].position()).collect()
     }

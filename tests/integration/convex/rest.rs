@@ -1,3 +1,5 @@
+use std::f32::consts::TAU;
+
 use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Pose;
@@ -36,5 +38,39 @@ fn a_head_rests_on_a_floor_as_with_stock() {
         let height = stock[599].translation.y - sbbk[599].translation.y;
         assert!(height.abs() < 0.02, "{height} higher");
         assert!(dispatcher.stats().queries > 30, "SBBK did not answer");
+    }
+}
+
+/// A cone of radius 0.4 with so many corners around its base.
+fn pyramid(corners: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let around = (0..corners).map(|i| {
+        let (sin, cos) = (TAU * i as f32 / corners as f32).sin_cos();
+        Vec3::new(0.4 * cos, -0.4, 0.4 * sin)
+    });
+    let [base, top] = [-0.4, 0.4].map(|y| Vec3::new(0.0, y, 0.0));
+    let side = |i: u32| [[i, corners, (i + 1) % corners], [(i + 1) % corners, corners + 1, i]];
+    (around.chain([top, base]).collect(), (0..corners).flat_map(side).collect())
+}
+
+/// Cones, cylinders, hulls and meshes with round bases, on a ground whose triangles are as large as they are.
+///
+/// Would catch bodies that roll on one point of a rim, or between points that hover. Up to half of them were awake.
+#[test]
+fn discs_on_uneven_ground_fall_asleep() {
+    let ground = mesh::terrain(20.0, 20, 0.6).shape();
+    let (points, triangles) = pyramid(32);
+    let shapes = [
+        SharedShape::cone(0.4, 0.4),
+        SharedShape::cylinder(0.4, 0.4),
+        SharedShape::convex_hull(&points).unwrap(),
+        SharedShape::trimesh(points, triangles).unwrap(),
+    ];
+    for shape in shapes {
+        let place =
+            |i: usize| Vec3::new(1.9 * (i % 6) as f32 - 4.5, 1.5, 1.7 * (i / 6) as f32 - 4.2);
+        let (places, dispatcher) = ((0..36).map(place), Some(SbbkDispatcher::default()));
+        let mut world = Bodies::above(ground.clone(), &shape, places, 1.0, dispatcher);
+        world.step(900);
+        assert!(world.awake() <= 6, "{} of {:?} are awake", world.awake(), shape.shape_type());
     }
 }

@@ -56,7 +56,7 @@ pub(crate) struct PatchPlan {
     /// [`SAME_NORMAL_OVER`]. Infinite if the prediction distance is a tenth of the radius or more.
     hover_distance: Real,
     /// Difference to the deepest contact of a patch up to which another counts as equally deep.
-    equal_depth: Real,
+    pub(super) equal_depth: Real,
     /// Contacts closer than this to the hull of the chosen ones are dropped. A point that has moved by no more is
     /// the same point.
     pub(super) size: Real,
@@ -313,9 +313,8 @@ fn to_segment(a: Vec3, b: Vec3, point: Vec3) -> Real {
 const LINE: Real = 1.0e-3;
 
 impl PatchPlan {
-    /// Returns up to four of `points`, which have distances. The first one is deepest. The others
-    /// extend the convex hull, seen along `normal`, as far as possible. Points that hover count as nearer. Lengths count
-    /// by their squares: the corners of a slanted flat body still come first.
+    /// Returns up to four of `points`, which have distances. The first one is deepest. The body reaches the
+    /// others after the least turn. They are far outside the convex hull, seen along `normal`, and hardly above the first one.
     pub(super) fn outermost(
         self,
         points: &[(Vec3, Real)],
@@ -332,7 +331,7 @@ impl PatchPlan {
         while !chosen.is_full() {
             let weighed = points.iter().zip(beyond.squares()).map(|((_, distance), square)| {
                 let hover = (distance - deepest).max(0.0) / self.equal_depth;
-                square / (1.0 + hover)
+                square / (1.0 + hover).powi(2)
             });
             let farthest = |most: (usize, Real), next: (usize, Real)| {
                 if next.1 > most.1 { next } else { most }
@@ -461,6 +460,10 @@ mod tests {
         assert_eq!(chosen(&points), [0, 2, 3, 4]);
         points[4].1 = -0.1;
         assert_eq!(chosen(&points), [0, 1, 2, 3]);
+        // Ends of two arcs that touch come before points farther aside that hover.
+        let arcs = [[-0.9, 0.4, -0.2], [-0.9, -0.4, -0.2], [0.9, 0.4, -0.2], [0.9, -0.4, -0.2]];
+        let aside = [[0.0, 1.3, -0.19], [0.0, -1.3, -0.19]];
+        assert_eq!(chosen(&at(&[&arcs[..], &aside].concat())), [0, 1, 2, 3]);
         let line = [0.0, 1.0, 2.0, 3.0, 2.5].map(|x| [x, 0.0, -0.2]);
         assert_eq!(chosen(&at(&line)), [0, 3]);
         // A plate that is aslant still has its corners.

@@ -3,13 +3,14 @@
 //! * [`shape`], [`parts`]: Parry's shapes, with bounds and poses.
 //! * [`near`]: descends Parry's BVH of the mesh with the box of a part in the frame of the part.
 //! * [`contact`]: the exact contact of a triangle and a part.
-//! * [`triangle_part`], [`points`]: write a contact to a manifold.
+//! * [`triangle_part`], [`points`], [`facing`]: write a contact to a manifold.
 //! * [`pair`]: a mesh and its parts. [`query`]: the contact query.
 //! * [`ghosts`], [`internal_edges`]: correct contacts at internal edges. [`push_out`]: moves parts out of solids.
 //! * [`search`], [`cast`]: queries without manifolds.
 
 mod cast;
 mod contact;
+mod facing;
 mod ghosts;
 mod internal_edges;
 mod near;

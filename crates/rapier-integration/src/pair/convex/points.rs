@@ -2,14 +2,15 @@
 
 use std::sync::LazyLock;
 
-use glamx::{DVec3, Vec3};
+use glamx::DVec3;
 use parry3d::math::Vector;
-use parry3d::shape::{Cuboid, PackedFeatureId, PolygonalFeature, Triangle};
+use parry3d::shape::{PackedFeatureId, PolygonalFeature, Triangle};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{ConvexContact, FeaturePoint, FeaturePoints, clip_feature};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::contact::{NormalSource, PartContact};
+use super::facing::facing_feature;
 use super::shape::ConvexShape;
 
 /// A contact point in the frame of the shape, without the rounding radius.
@@ -24,15 +25,17 @@ pub(super) struct PointPair {
 /// Features of closest points.
 const UNNAMED: [PackedFeatureId; 2] = [PackedFeatureId::UNKNOWN; 2];
 
-/// Calls `found` with the contact points of a triangle and a shape with polygonal features: closest
-/// points, and corners of the overlap of the triangle and the facing feature.
+/// Calls `found` with the contact points of a triangle and a shape with polygonal features. These are closest
+/// points, points of a rim, and corners of the overlap of the triangle and the facing feature.
 ///
-/// `normal` replaces the normal of the contact where normal cones have turned it.
+/// `normal` replaces the normal of the contact where normal cones have turned it. `equal_depth` is the difference up to which points
+/// count as equally deep.
 pub(super) fn contact_points(
     corners: &[DVec3; 3],
     shape: ConvexShape<'_>,
     contact: &PartContact,
     normal: Option<DVec3>,
+    equal_depth: f64,
     mut found: impl FnMut(PointPair),
 ) {
     let ConvexContact { distance, on_triangle, on_shape, .. } = contact.contact;
@@ -44,9 +47,9 @@ pub(super) fn contact_points(
     let is_own = !is_neighbours && normal.is_none();
     let normal = normal.unwrap_or(contact.contact.normal);
     let feature = facing_feature(shape, -normal.as_vec3(), on_shape.as_vec3());
-    let polygon = feature.vertices.map(|corner| corner.as_dvec3());
+    let polygon = &feature.vertices.map(|corner| corner.as_dvec3())[..feature.num_vertices];
     let mut points = FeaturePoints::new();
-    clip_feature(corners, &polygon[..feature.num_vertices], normal, &mut points);
+    clip_feature(corners, polygon, normal, &mut points);
     // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces. Points nearer
     // than the closest ones, or beyond the support point, are not on the shape.
     let size = polygon.iter().fold(0.0, |size: f64, x| size.max(x.abs().max_element()));
@@ -61,6 +64,7 @@ pub(super) fn contact_points(
         let distance = if is_own { point.distance.max(distance) } else { point.distance };
         found(PointPair { distance, ..named(point, &feature) });
     }
+    rim_points(corners, shape, on_shape, normal, polygon, equal_depth).for_each(&mut found);
     // Shapes other than cuboids may touch beside the corners of their features, which for a disc is a
     // square: they need the closest points, too.
     let is_cuboid = matches!(shape, ConvexShape::Cuboid(_));
@@ -71,27 +75,42 @@ pub(super) fn contact_points(
     }
 }
 
+/// Returns the points of a rim beside a contact, one on either side. A body on one point of a round rim would roll to another in
+/// each step, and never rest. `polygon` is the face that touches.
+///
+/// A tilt moves a point by its lever. So a tilt first reaches the point with the greatest lever for its distance and `equal_depth`.
+/// On a circle that point is the nearest one after the tilt below.
+fn rim_points(
+    corners: &[DVec3; 3],
+    shape: ConvexShape<'_>,
+    on_shape: DVec3,
+    normal: DVec3,
+    polygon: &[DVec3],
+    equal_depth: f64,
+) -> impl Iterator<Item = PointPair> {
+    let face = match (shape, polygon) {
+        (ConvexShape::Features { map, .. }, &[a, b, c, ..]) => Some((map, (b - a).cross(c - a))),
+        _ => None,
+    };
+    let middle = polygon.iter().sum::<DVec3>() / polygon.len().max(1) as f64;
+    let across = normal.cross(middle - on_shape);
+    let share = equal_depth / across.length();
+    [(1, 1.0), (2, -1.0)].into_iter().filter_map(move |(name, sign)| {
+        let (map, face) = face?;
+        let slope = face.cross(normal).length() / face.length();
+        let tilt = sign * (share * (share + 2.0 * slope)).sqrt() * across.normalize();
+        let beside = map.local_support_point((tilt - normal).as_vec3()).as_dvec3();
+        let is_new = beside.is_finite() && !polygon.contains(&beside) && beside != on_shape;
+        let point = is_new.then(|| on_face(corners, beside, normal)).flatten()?;
+        Some(PointPair { features: [PackedFeatureId::UNKNOWN, PackedFeatureId(name)], ..point })
+    })
+}
+
 /// Names the features of a point. `of_shape` is the clipped feature of the shape.
 fn named(point: &FeaturePoint, of_shape: &PolygonalFeature) -> PointPair {
     let FeaturePoint { on_triangle, on_shape, distance, features: [one, two], .. } = *point;
     let features = [feature_id(&TRIANGLE, one), feature_id(of_shape, two)];
     PointPair { on_triangle, on_shape, distance, features }
-}
-
-/// Returns the feature of a shape that faces a direction at a point.
-fn facing_feature(shape: ConvexShape<'_>, direction: Vec3, point: Vec3) -> PolygonalFeature {
-    let mut feature = PolygonalFeature::default();
-    match shape {
-        ConvexShape::Cuboid(cuboid) => {
-            feature = CUBE_FACES[face_toward(direction)].clone();
-            feature.vertices = feature.vertices.map(|corner| corner * cuboid.half_extents);
-        }
-        ConvexShape::Features { map, .. } => {
-            map.local_support_feature_toward(direction, point, &mut feature);
-        }
-        ConvexShape::Ball(_) | ConvexShape::HalfSpace(_) => {}
-    }
-    feature
 }
 
 fn feature_id(polygon: &PolygonalFeature, feature: Feature) -> PackedFeatureId {
@@ -119,21 +138,6 @@ fn on_face(&[a, b, c]: &[DVec3; 3], on_shape: DVec3, normal: DVec3) -> Option<Po
 /// Any triangle, for the ids of its features. Stored: Parry's constructor takes longer than the clip.
 static TRIANGLE: LazyLock<PolygonalFeature> =
     LazyLock::new(|| Triangle::new(Vector::X, Vector::Y, Vector::Z).into());
-
-/// The faces of a cube with half lengths of 1, by [`face_toward`].
-static CUBE_FACES: LazyLock<[PolygonalFeature; 6]> = LazyLock::new(|| {
-    let axes = [Vector::X, Vector::Y, Vector::Z];
-    std::array::from_fn(|i| {
-        let outward = if i < 3 { axes[i] } else { -axes[i - 3] };
-        Cuboid::new(Vector::ONE).support_face(outward)
-    })
-});
-
-/// Returns the index of the cuboid's face that is farthest along a direction.
-fn face_toward(direction: Vector) -> usize {
-    let axis = direction.abs().max_position();
-    if direction[axis] < 0.0 { axis + 3 } else { axis }
-}
 
 /// Angle at the centre of a ball by which a ray may miss a triangle and still hit. A ray at an edge must
 /// not miss both triangles because of rounding.

@@ -17,6 +17,7 @@ use super::points::{FACE, PointPair, contact_points, ray_length};
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::ContactSummary;
+use crate::pair::reduce::PatchPlan;
 use crate::pair::surface::LIP;
 use crate::pair::triangle_shapes::{filter_distance, filter_unit};
 
@@ -150,7 +151,7 @@ impl TrianglePartPair<'_> {
         let (radius, depth) = (shape.radius(), contact.contact.distance);
         let is_limited = contact.source == NormalSource::Neighbour || has_cones && depth < 0.0;
         let corners = &placed.in_part(self.corners);
-        contact_points(corners, *shape, contact, turned, |point| {
+        let push = |point| {
             let PointPair { on_triangle, on_shape, distance, features } = point;
             // Drops points that another normal puts much deeper than the contact, by Parry's limit.
             if is_limited && distance < 5.0 * depth.min(0.0) {
@@ -161,7 +162,9 @@ impl TrianglePartPair<'_> {
                 (mesh_place.swap(points), mesh_place.swap(features));
             let distance = (distance - f64::from(radius)) as Real;
             out.points.push(TrackedContact::new(point1, point2, fid1, fid2, distance));
-        });
+        };
+        let plan = PatchPlan::new(self.pair.pose.prediction, placed.extent.ball().radius);
+        contact_points(corners, *shape, contact, turned, plan.equal_depth.into(), push);
         out.normals = normals;
     }
 
@@ -244,7 +247,7 @@ impl TrianglePartPair<'_> {
         let (contact, feature) = (self.face_contact(corners)?, Feature::Face);
         let contact = PartContact { contact, feature, source: NormalSource::Neighbour };
         let mut is_crossing = false;
-        contact_points(corners, self.part.shape, &contact, None, |point| {
+        contact_points(corners, self.part.shape, &contact, None, 0.0, |point| {
             is_crossing |= point.distance < 0.0;
         });
         is_crossing.then_some(contact.contact)
