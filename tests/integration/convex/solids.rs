@@ -1,14 +1,15 @@
 use glamx::{Quat, Vec3};
+use oorandom::Rand32;
 use rapier_integration::{ContactDetail, SbbkDispatcher};
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::SharedShape;
 use rapier3d::prelude::RigidBodyBuilder;
 use sbbk_core::surface::SurfaceKind;
-use sbbk_testkit::mesh;
+use sbbk_testkit::mesh::{self, Mesh};
 
 use super::shapes::shapes;
-use crate::support::{Pair, Question, assert_bits, with};
+use crate::support::{Pair, Question, assert_bits, rotation, with};
 use crate::worlds::on_ground;
 
 fn leading_out(detail: ContactDetail) -> SbbkDispatcher {
@@ -138,4 +139,35 @@ fn ways_out_are_a_function_of_the_pose() {
         }
     }
     assert!(ways > 200, "{ways}");
+}
+
+/// Rooms are closed meshes that face outward, with a table or an open sheet in them, as one mesh.
+///
+/// Would catch contacts that are dropped as those of walls within a body.
+#[test]
+fn what_stands_in_a_room_has_contacts() {
+    let table = mesh::cuboid(Vec3::new(1.0, 0.3, 1.0), 1).mapped(|vertex| vertex - 0.3 * Vec3::Y);
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(5);
+    for (what, furniture) in [("table", table), ("sheet", mesh::floor(2.0, 1))] {
+        let room = mesh::cuboid(Vec3::splat(2.0), 1);
+        let room = Mesh::merged("room", &[room, furniture]).shape();
+        // The boxes of turned compounds are loose.
+        for (name, shape) in bodies().into_iter().filter(|(name, _)| *name != "compound") {
+            let touches = |_: &usize| {
+                let place =
+                    0.4 * Vec3::new(random.rand_float() - 0.5, 0.0, random.rand_float() - 0.5);
+                let turned = Pose::from_parts(place, rotation(&mut random));
+                let depth = 0.1 * random.rand_float();
+                let up = (-shape.compute_aabb(&turned).mins.y - depth) * Vec3::Y;
+                let question =
+                    Question::new(&*room, &*shape, Pose::translation(0.0, up.y, 0.0) * turned);
+                let mut pair = Pair::<(), ()>::default();
+                let found = &pair.ask(&dispatcher, &question).manifolds;
+                found.iter().any(|manifold| !manifold.points.is_empty())
+            };
+            let count = (0..100).filter(touches).count();
+            assert_eq!(count, 100, "{name} on a {what}");
+        }
+    }
 }

@@ -17,7 +17,7 @@ use super::pair::ConvexPair;
 use super::parts::{Part, PartData, Parts, PlacedPart};
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::mesh::{Change, LazySurface, PairMesh};
+use crate::mesh::{BEHIND, Change, LazySurface, PairMesh};
 use crate::pair::pose::PairPose;
 use crate::pair::query::{
     ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory,
@@ -223,7 +223,7 @@ impl PairQuery for ConvexQuery<'_> {
                 contacts.push((candidate.subshapes, contact));
             }
         }
-        self.drop_inner_walls(contacts);
+        self.drop_inner_walls(contacts, scratch);
         self.add_push_outs(contacts, scratch);
         self.correct_ghosts(contacts, scratch);
     }
@@ -260,18 +260,42 @@ impl PairQuery for ConvexQuery<'_> {
 
 impl ConvexQuery<'_> {
     /// Removes the contacts of triangles that have the body on both sides. Asks for sides only where
-    /// contacts push in different directions.
-    fn drop_inner_walls(&self, contacts: &mut ContactList<PartContact>) {
+    /// contacts push in different directions. Parts whose middle is in a solid keep all contacts: the solid is a room, and the
+    /// triangles are of what stands there.
+    fn drop_inner_walls(
+        &self,
+        contacts: &mut ContactList<PartContact>,
+        scratch: &mut ConvexScratch,
+    ) {
         let Some(surface) = &self.surface else { return };
         let normal = |(_, contact): &([u32; 2], PartContact)| contact.contact.normal;
         let first = contacts.first().map(normal);
         let differs = |hit: &_| first.is_some_and(|first| first.dot(normal(hit)) < SAME_WAY);
         if contacts.iter().any(differs) && surface.kind() != SurfaceKind::Sheet {
+            let mut last = None;
             contacts.retain(|(of, _)| {
-                let [triangle, _] = self.pair.mesh_place.swap(*of);
-                surface.around(triangle).side != Side::Inner
+                let [triangle, part] = self.pair.mesh_place.swap(*of);
+                surface.around(triangle).side != Side::Inner || {
+                    let known = last.filter(|(of, _)| *of == part);
+                    let within = || (part, self.is_middle_within(surface, part, scratch));
+                    last.insert(known.unwrap_or_else(within)).1
+                }
             });
         }
+    }
+
+    /// Returns true if the middle of a part is in a solid.
+    fn is_middle_within(
+        &self,
+        surface: &LazySurface<'_>,
+        part: u32,
+        scratch: &mut ConvexScratch,
+    ) -> bool {
+        let behind = self.pair.parts.with(part, |shape| {
+            let middle = self.placed(part, &shape, scratch).in_mesh(shape.shape.middle()?);
+            Some(surface.nearest(middle)?.2)
+        });
+        behind.flatten().is_some_and(|behind| behind >= BEHIND)
     }
 
     /// Returns the contact of a candidate within the prediction distance.
