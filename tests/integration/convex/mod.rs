@@ -26,3 +26,5 @@ mod seams;
 pub mod shapes;
 /// Shapes that start in solids.
 mod solids;
+/// Bodies at the foot of a wall.
+mod walls;

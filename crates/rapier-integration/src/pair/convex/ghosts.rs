@@ -23,6 +23,9 @@
 //! * Out of the wedge behind the planes of the triangle and another one, if the mesh is a solid. A
 //!   sheet has no body behind its triangles.
 //!
+//! A shape that stands at the foot of a wall has sunk into the floor, and is nearest to the edge between both.
+//! The wall then keeps a contact with its own normal, if the shape touches the wall once the floor has lifted it.
+//!
 //! [Borders](crate::pair::borders) of the mesh are met as their faces are.
 //!
 //! Triangles are neighbours if their corners are equal; meshes need no shared vertices. A contact that
@@ -59,6 +62,8 @@ pub(crate) struct GhostContacts {
     pub(super) nearby: Vec<u32>,
     /// Contacts of other triangles at the point of the one at hand.
     pub(super) strays: Vec<u32>,
+    /// Contacts of walls at whose foot the shape stands, along the normals of the walls.
+    pub(super) walls: Vec<(u32, ConvexContact)>,
 }
 
 struct Corner {
@@ -103,15 +108,17 @@ impl GhostContacts {
     ///
     /// `keys` returns the corners of a contact's triangle. `extends_beyond(a, b)` is true if the triangle of
     /// contact `a` extends beyond contact `b` along the normal of `b`. `find_strays` adds the
-    /// contacts of triangles at the point of a contact.
+    /// contacts of triangles at the point of a contact. `find_wall` returns the contact of a wall whose foot a nearer contact is.
     pub(super) fn find<I>(
         &mut self,
         contacts: &[(I, PartContact)],
         keys: impl Fn(&I) -> [u64; 3],
         mut extends_beyond: impl FnMut(&I, &ConvexContact) -> bool,
         mut find_strays: impl FnMut(&(I, PartContact), &mut Vec<u32>),
+        mut find_wall: impl FnMut(&I, &(I, PartContact)) -> Option<ConvexContact>,
     ) {
         self.index(contacts, keys);
+        self.walls.clear();
         self.on_faces.clear();
         self.borders.clear();
         self.sources.clear();
@@ -124,14 +131,17 @@ impl GhostContacts {
             let size = own.on_triangle.abs().max_element() + own.distance.abs();
             let is_nearer = |other: u32| distance(other) < own.distance - EQUAL * size;
             let mut nearest = self.nearest(contacts, contact, *feature);
-            if !is_nearer(nearest) {
+            let has_stray = !is_nearer(nearest);
+            if has_stray {
                 let (stray, has_strays) = self.stray(contacts, contact, &mut find_strays);
                 nearest = if distance(stray) < distance(nearest) { stray } else { nearest };
                 if !has_strays && self.is_border(contact, *feature) {
                     self.borders.push(contact);
                 }
             }
-            if is_nearer(nearest) {
+            if let Some(wall) = self.wall(contacts, contact, has_stray, &mut find_wall) {
+                self.walls.push((contact, wall));
+            } else if is_nearer(nearest) {
                 self.sources[contact as usize] = nearest;
             } else if own.distance < 0.0
                 && self.is_passed(contacts, contact, *feature, &mut extends_beyond)
@@ -140,6 +150,23 @@ impl GhostContacts {
             }
         }
         self.follow_sources();
+    }
+
+    /// Returns the contact of a wall if a contact at the same feature, or a stray, is of its floor. A contact
+    /// at the foot of a wall leads into the floor.
+    fn wall<I>(
+        &self,
+        contacts: &[(I, PartContact)],
+        contact: u32,
+        has_stray: bool,
+        find_wall: &mut impl FnMut(&I, &(I, PartContact)) -> Option<ConvexContact>,
+    ) -> Option<ConvexContact> {
+        let (of, PartContact { contact: own, feature, .. }) = &contacts[contact as usize];
+        let strays = if has_stray { &self.strays[..] } else { &[] };
+        let others = self.at_feature(contact, *feature).chain(strays.iter().copied());
+        let others = others.map(|other| &contacts[other as usize]);
+        let mut floors = others.filter(|(_, it)| it.contact.normal.dot(own.normal) < 0.0);
+        floors.find_map(|floor| find_wall(of, floor))
     }
 
     /// Replaces each source by the last one of its chain.
@@ -338,7 +365,7 @@ mod tests {
             calls.set(calls.get() + 1);
             false
         };
-        ghosts.find(&contacts, |&i| strip(i), extends_beyond, |_, _| {});
+        ghosts.find(&contacts, |&i| strip(i), extends_beyond, |_, _| {}, |_, _| None);
         assert!(calls.get() <= 6 * COUNT, "{} calls", calls.get());
         for i in 0..COUNT {
             ghosts.list_nearby(i);
@@ -353,13 +380,13 @@ mod tests {
             let of = |i: u32| (i, contact(0.01 * f64::from(i), Feature::Edge(0)));
             let mut contacts: Vec<_> = (0..count).map(of).collect();
             let mut ghosts = GhostContacts::default();
-            ghosts.find(&contacts, |&i| strip(i), |_, _| true, |_, _| {});
+            ghosts.find(&contacts, |&i| strip(i), |_, _| true, |_, _| {}, |_, _| None);
             assert_eq!(ghosts.sources, vec![0; count as usize]);
             assert!(ghosts.on_faces.is_empty(), "nothing crosses");
             contacts[2].1.feature = Feature::Face;
             contacts[1].1.contact.distance = -0.3;
             contacts[2].1.contact.distance = -0.2;
-            ghosts.find(&contacts, |&i| strip(i), |_, _| true, |_, _| {});
+            ghosts.find(&contacts, |&i| strip(i), |_, _| true, |_, _| {}, |_, _| None);
             assert_eq!(ghosts.sources[..4], [0, 1, 2, 2]);
             assert_eq!(ghosts.on_faces, [1]);
             ghosts.list_nearby(1);

@@ -68,6 +68,9 @@ impl ConvexQuery<'_> {
         }
         let mut ghosts = std::mem::take(&mut scratch.ghosts);
         self.find_ghosts(&mut ghosts, contacts, scratch);
+        for &(index, wall) in &ghosts.walls {
+            contacts[index as usize].1.contact = wall;
+        }
         self.turn_to_faces(&mut ghosts, contacts, scratch);
         self.turn_at_borders(&mut ghosts, contacts, scratch);
         for (contact, &source) in ghosts.sources.iter().enumerate() {
@@ -102,7 +105,13 @@ impl ConvexQuery<'_> {
                 self.strays_at(contacts, *of, place, seam, |stray| strays.push(stray));
             }
         };
-        ghosts.find(contacts, keys, extends_beyond, find_strays);
+        let find_wall = |&of: &[u32; 2], (of_floor, floor): &([u32; 2], PartContact)| {
+            let [floor_triangle, _] = self.pair.mesh_place.swap(*of_floor);
+            let of_floor = self.pair.mesh.corners(floor_triangle);
+            let scratch = &mut scratch_of.borrow_mut();
+            self.with_pair(of, scratch, |pair| pair.wall_contact(&floor.contact, of_floor))?
+        };
+        ghosts.find(contacts, keys, extends_beyond, find_strays, find_wall);
     }
 
     /// Gives contacts at [borders](crate::pair::borders) the normals of their faces.

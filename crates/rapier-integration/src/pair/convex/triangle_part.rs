@@ -57,16 +57,17 @@ const UPRIGHT: f64 = 1.0e-3;
 /// lower: rounding of the normals of curved shapes counts.
 const LEVEL: f64 = 2.0e-3;
 
+/// Barycentric coordinate from which a point counts as within a triangle. Higher: rounding hides walls from what stands at
+/// their feet. Lower: walls have contacts above them.
+const BESIDE: f64 = 1.0e-4;
+
 impl TrianglePartPair<'_> {
     /// Returns the point of a contact in the frame of the mesh, and the distance up to which triangles
     /// touch that point. A contact with the normal of its triangle is no ghost and has `None`.
     pub(super) fn touched_place(&self, contact: &ConvexContact) -> Option<(Vec3, f64)> {
         let corners @ [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
         let [normal, _] = self.placed.directions(contact.normal);
-        let up = (b - a).cross(c - a);
-        // False for a triangle without an area.
-        let is_upright =
-            up.cross(normal).length_squared() < UPRIGHT * UPRIGHT * up.length_squared();
+        let is_upright = is_parallel((b - a).cross(c - a), normal);
         (!is_upright).then(|| (self.placed.in_mesh(contact.on_triangle), seam(&corners)))
     }
 
@@ -299,6 +300,35 @@ impl TrianglePartPair<'_> {
         })
     }
 
+    /// Returns the contact of a wall with its own normal, if the part stands at its foot. `floor` is the contact of the
+    /// triangle at the foot, with the corners `of_floor`. Once it has lifted the part, the part touches the wall.
+    pub(super) fn wall_contact(
+        &self,
+        floor: &ConvexContact,
+        of_floor: [Vec3; 3],
+    ) -> Option<ConvexContact> {
+        let corners @ [a, b, c] = &self.placed.in_part(self.corners);
+        let wall = self.face_contact(corners)?;
+        let depth = f64::from(self.part.shape.radius()) - floor.distance;
+        if depth <= 0.0 || wall.normal.dot(floor.normal) >= SAME_WAY {
+            return None;
+        }
+        // Each triangle is in front of the other one.
+        let of_floor @ [p, q, r] = &self.placed.in_part(of_floor);
+        let is_upright = is_parallel((q - p).cross(r - p), floor.normal);
+        let middle = self.placed.extent.ball().centre.as_dvec3();
+        let is_over = is_upright && floor.normal.dot(middle - p) > 0.0;
+        if !is_over || !extends_beyond(corners, floor) || !extends_beyond(of_floor, &wall) {
+            return None;
+        }
+        let lifted = wall.on_shape + depth * floor.normal;
+        let area = (*b - *a).cross(*c - *a).dot(wall.normal);
+        let share =
+            |from: &DVec3, to: &DVec3| (to - from).cross(lifted - from).dot(wall.normal) / area;
+        let is_within = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| share(p, q) >= -BESIDE);
+        is_within.then_some(wall)
+    }
+
     /// Returns the contact of the part with the plane of the triangle, on the side of the part's middle.
     fn face_contact(&self, [a, b, c]: &[DVec3; 3]) -> Option<ConvexContact> {
         let Self { placed: PlacedPart { extent, .. }, part: Part { shape, .. }, .. } = *self;
@@ -316,6 +346,11 @@ impl TrianglePartPair<'_> {
         let on_triangle = on_shape - normal * distance;
         Some(ConvexContact { distance, normal, on_triangle, on_shape })
     }
+}
+
+/// Returns true if a unit vector is along a line. False for a triangle without an area.
+fn is_parallel(up: DVec3, normal: DVec3) -> bool {
+    up.cross(normal).length_squared() < UPRIGHT * UPRIGHT * up.length_squared()
 }
 
 /// Returns true if a triangle extends beyond a contact along its normal.

@@ -1,0 +1,67 @@
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::shape::SharedShape;
+use sbbk_testkit::mesh::{self, Mesh};
+
+use crate::support::{Pair, Question};
+
+/// Half the width of a body's base, and half its height.
+const HALF: Real = 0.2;
+const HIGH: Real = 0.15;
+
+/// A floor of this many cells a side that ends at a wall at `x = 2`, turned.
+fn corner(cells: u32, turn: Quat) -> SharedShape {
+    let floor = mesh::floor(4.0, cells);
+    let wall = floor.clone().mapped(|v| Vec3::new(2.0, 2.0 + v.x, -v.z));
+    Mesh::merged("corner", &[floor, wall]).welded().mapped(|v| turn * v).shape()
+}
+
+/// Bodies that are widest at the base.
+fn bodies() -> [(&'static str, SharedShape); 5] {
+    let base = [[HALF, HALF], [HALF, -HALF], [-HALF, HALF], [-HALF, -HALF]];
+    let hull = |top: Real| {
+        let at = |y: Real, scale: Real| base.map(|[x, z]| Vec3::new(scale * x, y, scale * z));
+        SharedShape::convex_hull(&[at(-HIGH, 1.0), at(HIGH, top)].concat()).unwrap()
+    };
+    let cone = SharedShape::cone(HIGH, HALF);
+    [
+        ("cone", cone.clone()),
+        ("compound", SharedShape::compound(vec![(Pose::IDENTITY, cone)])),
+        ("pyramid", hull(0.01)),
+        ("frustum", hull(0.5)),
+        ("cylinder", SharedShape::cylinder(HIGH, HALF)),
+    ]
+}
+
+/// Bodies that have sunk into the floor as far as Rapier allows, or less. The edge at the foot of the wall is nearer to them than any
+/// other point of the wall, and the floor is nearer still.
+///
+/// Would catch walls that are taken for ghosts of the floor. Cones walked through them.
+#[test]
+fn bodies_at_the_foot_of_a_wall_touch_it() {
+    let (dispatcher, mut random) = (SbbkDispatcher::default(), Rand32::new(3));
+    for (cells, angle) in [(1, 0.0), (1, 0.3), (5, 0.0), (8, 1.1)] {
+        let turn = Quat::from_rotation_z(angle);
+        let ground = corner(cells, turn);
+        for (name, body) in bodies() {
+            for past in [-0.005, 0.0015, 0.005, 0.02, 0.05] {
+                for sunk in [0.002, 0.0005, -0.002] {
+                    let z = random.rand_float() - 0.5;
+                    let place = Vec3::new(2.0 - HALF + past, HIGH - sunk, z);
+                    let pose = Pose::from_rotation(turn) * Pose::from_translation(place);
+                    let question = Question::new(&*ground, &*body, pose);
+                    let mut pair = Pair::<(), ()>::default();
+                    let found = &pair.ask(&dispatcher, &question).manifolds;
+                    let level = turn * Vec3::X;
+                    let walls = found.iter().filter(|it| it.local_n1.dot(level).abs() > 0.9);
+                    let least = walls.flat_map(|wall| &wall.points).map(|point| point.dist);
+                    let least = least.fold(Real::INFINITY, Real::min);
+                    let says = format!("{name}, {cells} cells, {past} past, {sunk} sunk: {least}");
+                    assert!((least + past).abs() < 0.002, "{says}");
+                }
+            }
+        }
+    }
+}
