@@ -18,25 +18,27 @@ fn corner(cells: u32, turn: Quat) -> SharedShape {
     Mesh::merged("corner", &[floor, wall]).welded().mapped(|v| turn * v).shape()
 }
 
-/// Bodies that are widest at the base.
-fn bodies() -> [(&'static str, SharedShape); 5] {
+/// A pyramid, or a frustum of one. Widest at the base.
+fn frustum(top: Real) -> Vec<Vec3> {
     let base = [[HALF, HALF], [HALF, -HALF], [-HALF, HALF], [-HALF, -HALF]];
-    let hull = |top: Real| {
-        let at = |y: Real, scale: Real| base.map(|[x, z]| Vec3::new(scale * x, y, scale * z));
-        SharedShape::convex_hull(&[at(-HIGH, 1.0), at(HIGH, top)].concat()).unwrap()
-    };
+    let at = |y: Real, scale: Real| base.map(|[x, z]| Vec3::new(scale * x, y, scale * z));
+    [at(-HIGH, 1.0), at(HIGH, top)].concat()
+}
+
+/// Convex bodies that are widest at the base.
+fn bodies() -> [(&'static str, SharedShape); 5] {
     let cone = SharedShape::cone(HIGH, HALF);
     [
         ("cone", cone.clone()),
         ("compound", SharedShape::compound(vec![(Pose::IDENTITY, cone)])),
-        ("pyramid", hull(0.01)),
-        ("frustum", hull(0.5)),
+        ("pyramid", SharedShape::convex_hull(&frustum(0.01)).unwrap()),
+        ("frustum", SharedShape::convex_hull(&frustum(0.5)).unwrap()),
         ("cylinder", SharedShape::cylinder(HIGH, HALF)),
     ]
 }
 
-/// Bodies that have sunk into the floor as far as Rapier allows, or less. The edge at the foot of the wall is nearer to them than any
-/// other point of the wall, and the floor is nearer still.
+/// The edge at the foot of the wall is nearer to these bodies than any other point of the wall, and the floor is nearer still. They
+/// have sunk into the floor as far as Rapier allows, or less.
 ///
 /// Would catch walls that are taken for ghosts of the floor. Cones walked through them.
 #[test]
@@ -47,7 +49,7 @@ fn bodies_at_the_foot_of_a_wall_touch_it() {
         let ground = corner(cells, turn);
         for (name, body) in bodies() {
             for past in [-0.005, 0.0015, 0.005, 0.02, 0.05] {
-                for sunk in [0.002, 0.0005, -0.002] {
+                for sunk in [0.002, 0.0005, 0.0, -0.002] {
                     let z = random.rand_float() - 0.5;
                     let place = Vec3::new(2.0 - HALF + past, HIGH - sunk, z);
                     let pose = Pose::from_rotation(turn) * Pose::from_translation(place);
