@@ -43,7 +43,7 @@ const UPRIGHT: f64 = 0.999_999;
 
 /// Depth up to which a shape counts as above the plane of a border triangle, in [`filter_unit`](super::triangle_shapes::filter_unit)s.
 /// Higher: rims do not carry what overhangs them. Lower: bodies stumble where meshes meet.
-pub(super) const LIP: f64 = 0.1;
+pub(super) const LIP: f64 = 0.25;
 
 /// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through sheets
 /// that face away from them. Lower: rods and plates sink through sheets.
