@@ -5,38 +5,49 @@ use std::sync::LazyLock;
 use arrayvec::ArrayVec;
 use glamx::Vec3;
 use parry3d::math::{Real, Vector};
-use parry3d::shape::{ConvexPolyhedron, Cuboid, PackedFeatureId, PolygonalFeature};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, PackedFeatureId, PolygonalFeature, ShapeType};
 
 use super::shape::ConvexShape;
 
-/// Returns the feature of a shape that faces a direction at a point.
+/// Returns the feature of a shape that faces a direction at a point, and true if it is part of a face with more corners.
 pub(super) fn facing_feature(
     shape: ConvexShape<'_>,
     direction: Vec3,
     point: Vec3,
-) -> PolygonalFeature {
+) -> (PolygonalFeature, bool) {
     let mut feature = PolygonalFeature::default();
     match shape {
         ConvexShape::Cuboid(cuboid) => {
             feature = CUBE_FACES[face_toward(direction)].clone();
             feature.vertices = feature.vertices.map(|corner| corner * cuboid.half_extents);
         }
-        ConvexShape::Features { map, .. } => match shape.polyhedron() {
-            Some(hull) => feature = facing_face(hull, direction, point),
-            None => map.local_support_feature_toward(direction, point, &mut feature),
-        },
+        ConvexShape::Features { shape: of, map, .. } => {
+            if let Some(hull) = shape.polyhedron() {
+                return facing_face(hull, direction, point);
+            }
+            map.local_support_feature_toward(direction, point, &mut feature);
+            let is_cap = feature.num_vertices == 4 && is_round(of.shape_type());
+            return (feature, is_cap);
+        }
         ConvexShape::Ball(_) | ConvexShape::HalfSpace(_) => {}
     }
-    feature
+    (feature, false)
 }
 
-/// Returns the face of a polyhedron that faces a direction, with up to four corners that are [far apart](spread).
-fn facing_face(hull: &ConvexPolyhedron, direction: Vec3, point: Vec3) -> PolygonalFeature {
+/// True for shapes whose caps are discs.
+fn is_round(shape: ShapeType) -> bool {
+    use ShapeType::{Cone, Cylinder, RoundCone, RoundCylinder};
+    matches!(shape, Cone | Cylinder | RoundCone | RoundCylinder)
+}
+
+/// Returns the face of a polyhedron that faces a direction, with up to four corners that are [far apart](spread), and true if the
+/// face has more.
+fn facing_face(hull: &ConvexPolyhedron, direction: Vec3, point: Vec3) -> (PolygonalFeature, bool) {
     let faces = hull.faces();
-    let height = |face: &usize| faces[*face].normal.dot(direction);
+    let heights = faces.iter().map(|face| face.normal.dot(direction)).enumerate();
     // The first of equal ones, as in Parry.
-    let facing = (0..faces.len()).rev().max_by(|a, b| height(a).total_cmp(&height(b)));
-    let facing = facing.unwrap_or_default();
+    let (facing, _) = heights
+        .fold((0, Real::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best });
     let first = faces[facing].first_vertex_or_edge as usize;
     let range = first..first + faces[facing].num_vertices_or_edges as usize;
     let vertices = &hull.vertices_adj_to_face()[range.clone()];
@@ -50,7 +61,7 @@ fn facing_face(hull: &ConvexPolyhedron, direction: Vec3, point: Vec3) -> Polygon
         feature.vids[to] = PackedFeatureId::vertex(vertices[from]);
         feature.eids[to] = PackedFeatureId::edge(edges[from]);
     }
-    feature
+    (feature, vertices.len() > num_vertices)
 }
 
 /// Returns all of up to four corners of a polygon. Of more, returns the one nearest to a point, the farthest from that one, and the
@@ -109,12 +120,15 @@ mod tests {
         let drum = ConvexPolyhedron::from_convex_hull(&points).unwrap();
         for i in 0..24 {
             let touching = around(i, -1.0);
-            let face = facing_face(&drum, Vec3::new(0.01, -1.0, 0.02), touching);
-            assert!(face.num_vertices == 4 && face.vertices.contains(&touching), "{face:?}");
+            let (face, has_more) = facing_face(&drum, Vec3::new(0.01, -1.0, 0.02), touching);
+            assert!(
+                has_more && face.num_vertices == 4 && face.vertices.contains(&touching),
+                "{face:?}"
+            );
             let apart = (0..4).map(|j| face.vertices[j].distance(face.vertices[(j + 1) % 4]));
             assert!(apart.fold(2.0, Real::min) > 1.3, "{face:?}");
-            let side = facing_face(&drum, around(2 * i + 1, 0.0).with_y(0.0), touching);
-            assert!(side.num_vertices <= 4, "{side:?}");
+            let (side, has_more) = facing_face(&drum, around(2 * i + 1, 0.0).with_y(0.0), touching);
+            assert!(!has_more && side.num_vertices <= 4, "{side:?}");
         }
     }
 }

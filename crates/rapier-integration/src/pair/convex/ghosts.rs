@@ -32,6 +32,8 @@
 //! no such neighbour explains is compared with all triangles at its point
 //! ([`strays`](sbbk_core::surface::strays)).
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use glamx::Vec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
@@ -93,6 +95,14 @@ fn contact_of(entry: u128) -> u32 {
     (entry >> 8) as u32
 }
 
+/// Returns false if no two contacts have normals more than a right angle apart.
+fn push_apart<I>(contacts: &[(I, PartContact)]) -> bool {
+    let normal = |(_, hit): &(I, PartContact)| hit.contact.normal;
+    let mut normals = contacts.iter().map(normal);
+    let Some(first) = normals.next() else { return false };
+    normals.any(|normal| first.dot(normal) < FRAC_1_SQRT_2 + EQUAL)
+}
+
 /// Returns the corners of an edge, or a vertex twice.
 fn ends(feature: Feature) -> [usize; 2] {
     match feature {
@@ -123,6 +133,7 @@ impl GhostContacts {
         self.borders.clear();
         self.sources.clear();
         self.sources.extend(0..contacts.len() as u32);
+        let may_have_walls = push_apart(contacts);
         for (contact, (_, PartContact { contact: own, feature, .. })) in (0..).zip(contacts) {
             if *feature == Feature::Face {
                 continue;
@@ -139,7 +150,8 @@ impl GhostContacts {
                     self.borders.push(contact);
                 }
             }
-            if let Some(wall) = self.wall(contacts, contact, has_stray, &mut find_wall) {
+            let find_wall = || self.wall(contacts, contact, has_stray, &mut find_wall);
+            if let Some(wall) = may_have_walls.then(find_wall).flatten() {
                 self.walls.push((contact, wall));
             } else if is_nearer(nearest) {
                 self.sources[contact as usize] = nearest;

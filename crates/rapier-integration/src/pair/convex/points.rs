@@ -46,7 +46,7 @@ pub(super) fn contact_points(
     let is_neighbours = contact.source == NormalSource::Neighbour;
     let is_own = !is_neighbours && normal.is_none();
     let normal = normal.unwrap_or(contact.contact.normal);
-    let feature = facing_feature(shape, -normal.as_vec3(), on_shape.as_vec3());
+    let (feature, has_rim) = facing_feature(shape, -normal.as_vec3(), on_shape.as_vec3());
     let polygon = &feature.vertices.map(|corner| corner.as_dvec3())[..feature.num_vertices];
     let mut points = FeaturePoints::new();
     clip_feature(corners, polygon, normal, &mut points);
@@ -64,7 +64,9 @@ pub(super) fn contact_points(
         let distance = if is_own { point.distance.max(distance) } else { point.distance };
         found(PointPair { distance, ..named(point, &feature) });
     }
-    rim_points(corners, shape, on_shape, normal, polygon, equal_depth).for_each(&mut found);
+    if has_rim {
+        rim_points(corners, shape, on_shape, normal, polygon, equal_depth).for_each(&mut found);
+    }
     // Shapes other than cuboids may touch beside the corners of their features, which for a disc is a
     // square: they need the closest points, too.
     let is_cuboid = matches!(shape, ConvexShape::Cuboid(_));
