@@ -37,7 +37,7 @@ fn bodies() -> [(&'static str, SharedShape); 5] {
     ]
 }
 
-/// The edge at the foot of the wall is nearer to these bodies than any other point of the wall, and the floor is nearer still. They
+/// The edge at the foot of the wall is its nearest point to these bodies, and the floor is nearer still. They
 /// have sunk into the floor as far as Rapier allows, or less.
 ///
 /// Would catch walls that are taken for ghosts of the floor. Cones walked through them.

@@ -40,8 +40,8 @@ fn is_round(shape: ShapeType) -> bool {
     matches!(shape, Cone | Cylinder | RoundCone | RoundCylinder)
 }
 
-/// Returns the face of a polyhedron that faces a direction, with up to four corners that are [far apart](spread), and true if the
-/// face has more.
+/// Returns the face of a polyhedron that faces a direction, and true if it has more corners than those returned. Up to four corners
+/// are returned, which are [far apart](spread).
 fn facing_face(hull: &ConvexPolyhedron, direction: Vec3, point: Vec3) -> (PolygonalFeature, bool) {
     let faces = hull.faces();
     let heights = faces.iter().map(|face| face.normal.dot(direction)).enumerate();
@@ -64,7 +64,7 @@ fn facing_face(hull: &ConvexPolyhedron, direction: Vec3, point: Vec3) -> (Polygo
     (feature, vertices.len() > num_vertices)
 }
 
-/// Returns all of up to four corners of a polygon. Of more, returns the one nearest to a point, the farthest from that one, and the
+/// Returns all of up to four corners of a polygon. Else returns the corner nearest to a point, the farthest from that one, and the
 /// farthest on either side of both. Parry takes the first four, which may all be at one end.
 fn spread(
     count: usize,

@@ -44,6 +44,9 @@ use super::contact::PartContact;
 /// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
 const EQUAL: f64 = 1.0e-12;
 
+/// Contacts at a feature that may be of a floor. Higher: slow at the hub of a fan. Lower: walls are ghosts where many triangles meet.
+const CROWD: usize = 64;
+
 /// Memory for the search: the contacts by the corners of their triangles.
 #[derive(Default)]
 pub(crate) struct GhostContacts {
@@ -176,7 +179,7 @@ impl GhostContacts {
         let (of, PartContact { contact: own, feature, .. }) = &contacts[contact as usize];
         let strays = if has_stray { &self.strays[..] } else { &[] };
         let others = self.at_feature(contact, *feature).chain(strays.iter().copied());
-        let others = others.map(|other| &contacts[other as usize]);
+        let others = others.take(CROWD).map(|other| &contacts[other as usize]);
         let mut floors = others.filter(|(_, it)| it.contact.normal.dot(own.normal) < 0.0);
         floors.find_map(|floor| find_wall(of, floor))
     }
