@@ -65,7 +65,7 @@ fn round_bodies_roll_over_a_seam_as_over_a_floor() {
             (0..(150.0 / speed) as usize).for_each(|_| world.step());
             let left = world.bodies[body].linvel().x / speed;
             let kind = shape.shape_type();
-            assert!((left - 1.0).abs() < 0.01, "{kind:?} at {speed}, {phase}: {left} of its speed");
+            assert!((left - 1.0).abs() < 0.03, "{kind:?} at {speed}, {phase}: {left} of its speed");
         }
     }
 }
