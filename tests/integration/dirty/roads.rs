@@ -1,7 +1,7 @@
 use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use rapier3d::geometry::ColliderBuilder;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
@@ -47,10 +47,9 @@ fn bodies_ride_over_chunks_as_on_a_cuboid() {
 
 /// Would catch borders that a ball meets from ahead. At rest it sinks in by an eighth of the prediction distance.
 #[test]
-fn round_bodies_roll_over_a_seam_as_over_a_floor() {
+fn balls_roll_over_a_seam_as_over_a_floor() {
     const RADIUS: f32 = 0.2;
-    let shapes = [SharedShape::ball(RADIUS), SharedShape::capsule_z(0.2, RADIUS)];
-    for (shape, speed) in shapes.iter().flat_map(|shape| [1.0, 3.0].map(|v| (shape, v))) {
+    for speed in [1.0, 3.0] {
         for phase in 0..6 {
             let mut world = PhysicsWorld::new();
             world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
@@ -61,11 +60,10 @@ fn round_bodies_roll_over_a_seam_as_over_a_floor() {
             let place = Vec3::new(-1.0 - 0.07 * phase as f32, RADIUS + 0.001, 0.17);
             let body = RigidBodyBuilder::dynamic().translation(place).linvel(speed * Vec3::X);
             let body = body.angvel(-speed / RADIUS * Vec3::Z);
-            let (body, _) = world.insert(body, ColliderBuilder::new(shape.clone()));
+            let (body, _) = world.insert(body, ColliderBuilder::ball(RADIUS));
             (0..(150.0 / speed) as usize).for_each(|_| world.step());
             let left = world.bodies[body].linvel().x / speed;
-            let kind = shape.shape_type();
-            assert!((left - 1.0).abs() < 0.03, "{kind:?} at {speed}, {phase}: {left} of its speed");
+            assert!((left - 1.0).abs() < 0.03, "{left} of its speed of {speed}, {phase}");
         }
     }
 }
