@@ -143,7 +143,7 @@ fn ways_out_are_a_function_of_the_pose() {
 
 /// Rooms are closed meshes that face outward, with a table or an open sheet in them, as one mesh.
 ///
-/// Would catch contacts that are dropped as those of walls within a body.
+/// Would catch a table that counts as a wall within the body.
 #[test]
 fn what_stands_in_a_room_has_contacts() {
     let table = mesh::cuboid(Vec3::new(1.0, 0.3, 1.0), 1).mapped(|vertex| vertex - 0.3 * Vec3::Y);
@@ -159,9 +159,9 @@ fn what_stands_in_a_room_has_contacts() {
                     0.4 * Vec3::new(random.rand_float() - 0.5, 0.0, random.rand_float() - 0.5);
                 let turned = Pose::from_parts(place, rotation(&mut random));
                 let depth = 0.1 * random.rand_float();
-                let up = (-shape.compute_aabb(&turned).mins.y - depth) * Vec3::Y;
-                let question =
-                    Question::new(&*room, &*shape, Pose::translation(0.0, up.y, 0.0) * turned);
+                let up = -shape.compute_aabb(&turned).mins.y - depth;
+                let pose = Pose::translation(0.0, up, 0.0) * turned;
+                let question = Question::new(&*room, &*shape, pose);
                 let mut pair = Pair::<(), ()>::default();
                 let found = &pair.ask(&dispatcher, &question).manifolds;
                 found.iter().any(|manifold| !manifold.points.is_empty())

@@ -2,10 +2,9 @@ use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
+use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
-
-use rapier3d::parry::shape::TriMeshFlags;
 
 use super::rides::{Course, riders};
 use super::table::{Case, judge};

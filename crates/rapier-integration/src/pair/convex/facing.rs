@@ -83,9 +83,10 @@ fn spread(
     let far = farthest(&|to| to.distance_squared(corner(near)));
     let aside = normal.cross(corner(far) - corner(near));
     let [one, other] = [aside, -aside].map(|aside| farthest(&|corner| corner.dot(aside)));
-    let mut corners = ArrayVec::from([near, far, one, other]);
+    let mut corners = [near, far, one, other];
     corners.sort_unstable();
-    corners
+    // All corners may be on one side.
+    corners.chunk_by(PartialEq::eq).map(|equal| equal[0]).collect()
 }
 
 /// The faces of a cube with half lengths of 1, by [`face_toward`].
@@ -105,7 +106,7 @@ fn face_toward(direction: Vector) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use std::f32::consts::TAU;
+    use std::f32::consts::{PI, TAU};
 
     use super::*;
 
@@ -130,5 +131,16 @@ mod tests {
             let (side, has_more) = facing_face(&drum, around(2 * i + 1, 0.0).with_y(0.0), touching);
             assert!(!has_more && side.num_vertices <= 4, "{side:?}");
         }
+    }
+
+    /// The point is at one end of the flat side of a half disc. Would catch a corner that comes twice.
+    #[test]
+    fn corners_far_apart_are_unlike_if_all_are_on_one_side() {
+        let corner = |i: usize| {
+            let (sin, cos) = (PI * i as Real / 12.0).sin_cos();
+            Vec3::new(cos, sin, 0.0)
+        };
+        let corners = spread(13, corner, Vec3::Z, Vec3::X);
+        assert_eq!(corners[..], [0, 6, 12]);
     }
 }

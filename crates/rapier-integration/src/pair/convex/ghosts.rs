@@ -130,12 +130,7 @@ impl GhostContacts {
         mut find_strays: impl FnMut(&(I, PartContact), &mut Vec<u32>),
         mut find_wall: impl FnMut(&I, &(I, PartContact)) -> Option<ConvexContact>,
     ) {
-        self.index(contacts, keys);
-        self.walls.clear();
-        self.on_faces.clear();
-        self.borders.clear();
-        self.sources.clear();
-        self.sources.extend(0..contacts.len() as u32);
+        self.begin(contacts, keys);
         let may_have_walls = push_apart(contacts);
         for (contact, (_, PartContact { contact: own, feature, .. })) in (0..).zip(contacts) {
             if *feature == Feature::Face {
@@ -145,15 +140,15 @@ impl GhostContacts {
             let size = own.on_triangle.abs().max_element() + own.distance.abs();
             let is_nearer = |other: u32| distance(other) < own.distance - EQUAL * size;
             let mut nearest = self.nearest(contacts, contact, *feature);
-            let has_stray = !is_nearer(nearest);
-            if has_stray {
+            let seeks_strays = !is_nearer(nearest);
+            if seeks_strays {
                 let (stray, has_strays) = self.stray(contacts, contact, &mut find_strays);
                 nearest = if distance(stray) < distance(nearest) { stray } else { nearest };
                 if !has_strays && self.is_border(contact, *feature) {
                     self.borders.push(contact);
                 }
             }
-            let find_wall = || self.wall(contacts, contact, has_stray, &mut find_wall);
+            let find_wall = || self.wall(contacts, contact, seeks_strays, &mut find_wall);
             if let Some(wall) = may_have_walls.then(find_wall).flatten() {
                 self.walls.push((contact, wall));
             } else if is_nearer(nearest) {
@@ -173,11 +168,11 @@ impl GhostContacts {
         &self,
         contacts: &[(I, PartContact)],
         contact: u32,
-        has_stray: bool,
+        has_strays: bool,
         find_wall: &mut impl FnMut(&I, &(I, PartContact)) -> Option<ConvexContact>,
     ) -> Option<ConvexContact> {
         let (of, PartContact { contact: own, feature, .. }) = &contacts[contact as usize];
-        let strays = if has_stray { &self.strays[..] } else { &[] };
+        let strays = if has_strays { &self.strays[..] } else { &[] };
         let others = self.at_feature(contact, *feature).chain(strays.iter().copied());
         let others = others.take(CROWD).map(|other| &contacts[other as usize]);
         let mut floors = others.filter(|(_, it)| it.contact.normal.dot(own.normal) < 0.0);
@@ -194,6 +189,16 @@ impl GhostContacts {
             // Shortens the chains of later contacts.
             self.sources[contact] = source;
         }
+    }
+
+    /// Forgets the last contacts.
+    fn begin<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [u64; 3]) {
+        self.index(contacts, keys);
+        self.walls.clear();
+        self.on_faces.clear();
+        self.borders.clear();
+        self.sources.clear();
+        self.sources.extend(0..contacts.len() as u32);
     }
 
     /// Lists the contacts of each corner.

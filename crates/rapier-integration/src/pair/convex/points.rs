@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use glamx::DVec3;
 use parry3d::math::Vector;
-use parry3d::shape::{PackedFeatureId, PolygonalFeature, Triangle};
+use parry3d::shape::{PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, Triangle};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{ConvexContact, FeaturePoint, FeaturePoints, clip_feature};
 use sbbk_core::volumes::rounding::gamma;
@@ -64,8 +64,8 @@ pub(super) fn contact_points(
         let distance = if is_own { point.distance.max(distance) } else { point.distance };
         found(PointPair { distance, ..named(point, &feature) });
     }
-    if has_rim {
-        rim_points(corners, shape, on_shape, normal, polygon, equal_depth).for_each(&mut found);
+    if has_rim && let ConvexShape::Features { map, .. } = shape {
+        rim_points(corners, map, on_shape, normal, polygon, equal_depth).for_each(&mut found);
     }
     // Shapes other than cuboids may touch beside the corners of their features, which for a disc is a
     // square: they need the closest points, too.
@@ -78,29 +78,25 @@ pub(super) fn contact_points(
 }
 
 /// Returns the points of a rim beside a contact, one on either side. A body on one point of a round rim would roll to another in
-/// each step, and never rest. `polygon` is the face that touches.
+/// each step, and never rest. `polygon` has corners of the face that touches.
 ///
 /// A tilt moves a point by its lever. So a tilt first reaches the point with the greatest lever for its distance and `equal_depth`.
 /// On a circle that point is the nearest one after the tilt below.
 fn rim_points(
     corners: &[DVec3; 3],
-    shape: ConvexShape<'_>,
+    map: &dyn PolygonalFeatureMap,
     on_shape: DVec3,
     normal: DVec3,
     polygon: &[DVec3],
     equal_depth: f64,
 ) -> impl Iterator<Item = PointPair> {
-    let face = match (shape, polygon) {
-        (ConvexShape::Features { map, .. }, &[a, b, c, ..]) => Some((map, (b - a).cross(c - a))),
-        _ => None,
-    };
-    let middle = polygon.iter().sum::<DVec3>() / polygon.len().max(1) as f64;
+    let face = (polygon[1] - polygon[0]).cross(polygon[2] - polygon[0]);
+    let slope = face.cross(normal).length() / face.length();
+    let middle = polygon.iter().sum::<DVec3>() / polygon.len() as f64;
     let across = normal.cross(middle - on_shape);
     let share = equal_depth / across.length();
-    [(1, 1.0), (2, -1.0)].into_iter().filter_map(move |(name, sign)| {
-        let (map, face) = face?;
-        let slope = face.cross(normal).length() / face.length();
-        let tilt = sign * (share * (share + 2.0 * slope)).sqrt() * across.normalize();
+    let tilt = (share * (share + 2.0 * slope)).sqrt() * across.normalize();
+    [(1, tilt), (2, -tilt)].into_iter().filter_map(move |(name, tilt)| {
         let beside = map.local_support_point((tilt - normal).as_vec3()).as_dvec3();
         let is_new = beside.is_finite() && !polygon.contains(&beside) && beside != on_shape;
         let point = is_new.then(|| on_face(corners, beside, normal)).flatten()?;
@@ -124,17 +120,25 @@ fn feature_id(polygon: &PolygonalFeature, feature: Feature) -> PackedFeatureId {
 }
 
 /// Returns a point of the shape with the point of the triangle along a normal; `None` beside the triangle.
-fn on_face(&[a, b, c]: &[DVec3; 3], on_shape: DVec3, normal: DVec3) -> Option<PointPair> {
+fn on_face(corners @ [a, b, c]: &[DVec3; 3], on_shape: DVec3, normal: DVec3) -> Option<PointPair> {
     let face = (b - a).cross(c - a);
     let distance = (on_shape - a).dot(face) / normal.dot(face);
     let on_triangle = on_shape - normal * distance;
-    let is_beside = |from: DVec3, to: DVec3| (to - from).cross(on_triangle - from).dot(face) >= 0.0;
-    (is_beside(a, b) && is_beside(b, c) && is_beside(c, a)).then_some(PointPair {
+    is_over(corners, on_triangle, 0.0).then_some(PointPair {
         on_triangle,
         on_shape,
         distance,
         features: UNNAMED,
     })
+}
+
+/// Returns true if a point is over a triangle, seen along the normal of the triangle. Barycentric coordinates may be as far below
+/// zero as `slack`.
+pub(super) fn is_over([a, b, c]: &[DVec3; 3], point: DVec3, slack: f64) -> bool {
+    let face = (b - a).cross(c - a);
+    let least = -slack * face.length_squared();
+    let is_beside = |from: &DVec3, to: &DVec3| (to - from).cross(point - from).dot(face) >= least;
+    is_beside(a, b) && is_beside(b, c) && is_beside(c, a)
 }
 
 /// Any triangle, for the ids of its features. Stored: Parry's constructor takes longer than the clip.

@@ -13,7 +13,7 @@ use sbbk_core::volumes::Sphere;
 use super::contact::{KeptHull, NormalSource, PartContact, SAME_WAY, core_contact, core_support};
 use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
-use super::points::{FACE, PointPair, contact_points, ray_length};
+use super::points::{FACE, PointPair, contact_points, is_over, ray_length};
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::ContactSummary;
@@ -164,8 +164,9 @@ impl TrianglePartPair<'_> {
             let distance = (distance - f64::from(radius)) as Real;
             out.points.push(TrackedContact::new(point1, point2, fid1, fid2, distance));
         };
-        let plan = PatchPlan::new(self.pair.pose.prediction, placed.extent.ball().radius);
-        contact_points(corners, *shape, contact, turned, plan.equal_depth.into(), push);
+        let radius = placed.extent.ball().radius;
+        let PatchPlan { equal_depth, .. } = PatchPlan::new(self.pair.pose.prediction, radius);
+        contact_points(corners, *shape, contact, turned, equal_depth.into(), push);
         out.normals = normals;
     }
 
@@ -307,7 +308,7 @@ impl TrianglePartPair<'_> {
         floor: &ConvexContact,
         of_floor: [Vec3; 3],
     ) -> Option<ConvexContact> {
-        let corners @ [a, b, c] = &self.placed.in_part(self.corners);
+        let corners = &self.placed.in_part(self.corners);
         let wall = self.face_contact(corners)?;
         let depth = f64::from(self.part.shape.radius()) - floor.distance;
         if depth <= 0.0 || wall.normal.dot(floor.normal) >= SAME_WAY {
@@ -317,16 +318,12 @@ impl TrianglePartPair<'_> {
         let of_floor @ [p, q, r] = &self.placed.in_part(of_floor);
         let is_upright = is_parallel((q - p).cross(r - p), floor.normal);
         let middle = self.placed.extent.ball().centre.as_dvec3();
-        let is_over = is_upright && floor.normal.dot(middle - p) > 0.0;
-        if !is_over || !extends_beyond(corners, floor) || !extends_beyond(of_floor, &wall) {
+        let is_under = is_upright && floor.normal.dot(middle - p) > 0.0;
+        if !is_under || !extends_beyond(corners, floor) || !extends_beyond(of_floor, &wall) {
             return None;
         }
         let lifted = wall.on_shape + depth * floor.normal;
-        let area = (*b - *a).cross(*c - *a).dot(wall.normal);
-        let share =
-            |from: &DVec3, to: &DVec3| (to - from).cross(lifted - from).dot(wall.normal) / area;
-        let is_within = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| share(p, q) >= -BESIDE);
-        is_within.then_some(wall)
+        is_over(corners, lifted, BESIDE).then_some(wall)
     }
 
     /// Returns the contact of the part with the plane of the triangle, on the side of the part's middle.

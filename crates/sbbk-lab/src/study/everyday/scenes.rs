@@ -273,7 +273,7 @@ pub(super) fn tori(tube: u32, steps: usize) -> Everyday<'static> {
     named(FINE, "30 tori in a pile", triangles, steps, build)
 }
 
-/// The pile of [`tori`] with Parry's convex parts of a torus in place of its mesh.
+/// Like [`tori`], with the convex parts into which Parry decomposes a torus.
 pub(super) fn decomposed_tori(tube: u32, steps: usize) -> Everyday<'static> {
     let pile = MonkeyPile::of(30, mesh::torus(1.0, 0.4, 3 * tube, tube));
     let start = Instant::now();
