@@ -5,6 +5,7 @@ use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
 use rapier3d::parry::shape::TriMesh;
+use sbbk_testkit::mesh;
 use sbbk_truth::TruthPair;
 
 use crate::support::{direction, reach, rotation};
@@ -170,4 +171,22 @@ fn casts_from_contact_are_like_stock() {
     }
     // The rest is up to EPA's normals.
     assert!(count > 100 && both > 50 && 10 * same >= 9 * count, "{same} of {count}, {both} hit");
+}
+
+/// Balls that spin pass each other at a small distance. Would catch steps that a spin shortens, and that are used up.
+#[test]
+fn balls_that_spin_pass_each_other() {
+    let dispatcher = SbbkDispatcher::default();
+    let ball = mesh::ball(0.5, 12).shape();
+    for (height, spin) in [(1.001, 1.0e3), (1.001, 1.0e6), (5.0, 1.0e6), (0.9, 1.0e3)] {
+        let start =
+            [0.0, 3.0].map(|x| Pose3::translation(x, if x == 0.0 { 0.0 } else { height }, 0.0));
+        let velocities = [Vec3::ZERO, Vec3::new(-6.0, 0.0, 0.0)];
+        let motions = [0, 1].map(|i| {
+            NonlinearRigidMotion::new(start[i], Vec3::ZERO, velocities[i], spin * Vec3::Y)
+        });
+        let meshes = [ball.as_trimesh().unwrap(); 2];
+        let hit = Cast { meshes, motions }.ask(&dispatcher);
+        assert_eq!(hit.is_some(), height < 1.0, "{height} {spin}: {hit:?}");
+    }
 }

@@ -9,7 +9,7 @@ use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
 use super::{FLAGS, prepared_world, row, world};
-use crate::support::direction;
+use crate::support::{Pair, Question, assert_bits, counting_patches, direction};
 use crate::worlds::after;
 
 /// Half the side of a room, and of a body in it.
@@ -57,6 +57,71 @@ fn bodies_stay_in_rooms() {
         drop(prepared);
     }
     judge("height of a body in a room with its floor at -3, after 4 s", &cases, &[]);
+}
+
+/// Bodies slide over the floor of a room towards a block that pierces the floor, or drop onto the block. Room and block are one
+/// mesh.
+///
+/// Would catch sides of the block that tell that the body is outside of the room.
+#[test]
+fn bodies_meet_furniture_that_pierces_the_floor() {
+    let mut cases = Vec::new();
+    for (cells, flags) in [1, 5, 30].into_iter().flat_map(|cells| FLAGS.map(|flags| (cells, flags)))
+    {
+        let block = mesh::cuboid(Vec3::splat(1.0), cells).mapped(|vertex| vertex - ROOM * Vec3::Y);
+        let room = mesh::cuboid(Vec3::splat(ROOM), cells);
+        let room = Mesh::merged("room", &[room, block]).shape_with(flags);
+        for (column, shape) in bodies(flags) {
+            for (what, start, speed, at) in [
+                (
+                    "beside",
+                    Vec3::new(2.2, BODY - ROOM + 0.02, 0.2),
+                    -3.0,
+                    Vec3::new(1.0 + BODY, BODY - ROOM, 0.0),
+                ),
+                (
+                    "on top",
+                    Vec3::new(0.1, 1.2 + BODY - ROOM, 0.2),
+                    0.0,
+                    Vec3::new(0.1, 1.0 + BODY - ROOM, 0.0),
+                ),
+            ] {
+                let mut world = world(ColliderBuilder::new(room.clone()));
+                let body = RigidBodyBuilder::dynamic().translation(start).linvel(speed * Vec3::X);
+                let body = world.insert(body, ColliderBuilder::new(shape.clone()).friction(0.1)).0;
+                (0..90).for_each(|_| world.step());
+                let place = world.bodies[body].translation();
+                let is_right = (place.y - at.y).abs() < 0.05 && place.x > at.x - 0.05;
+                let shown = format!("{:.2} {:.2}", place.x, place.y);
+                let row = row(&format!("{what}, {} triangles", 24 * cells * cells), flags);
+                cases.push(Case { row, column, shown, is_right });
+            }
+        }
+    }
+    judge("place of a body at a block of 2 that pierces the floor at -3", &cases, &[]);
+}
+
+/// A ball flies through a room and into its walls. Would catch contacts that depend on the queries before, and descents where
+/// nothing is near.
+#[test]
+fn contacts_in_a_room_are_a_function_of_the_pose() {
+    let ball = mesh::ball(BODY, 6).shape();
+    for cells in [1, 8] {
+        let room = mesh::cuboid(Vec3::splat(ROOM), cells).shape();
+        let (kept, fresh) = (counting_patches(), SbbkDispatcher::default());
+        let (mut pair, mut touched) = (Pair::<(), ()>::default(), 0);
+        for step in 0..1000 {
+            let at =
+                Vec3::new(0.5, 0.83, 0.31).map(|speed| 2.7 * (0.02 * speed * step as f32).sin());
+            let pose = Pose3::from_parts(at, Quat::from_rotation_y(0.01 * step as f32));
+            let question = Question::new(&*room, &*ball, pose).within(0.02);
+            let found = &pair.ask(&kept, &question).manifolds;
+            assert_bits(found, &question.fresh(&fresh), &format!("{step} of {cells}"));
+            touched += usize::from(!found.is_empty());
+        }
+        let descended = kept.stats().descended_queries;
+        assert!(touched > 50 && descended < 700, "{touched} touched, {descended} descended");
+    }
 }
 
 /// Rooms whose floor has a cell that is wound the other way. Would catch bodies that count as outside, as the nearest triangle

@@ -12,7 +12,7 @@ use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
     Around, Facets, MinimumCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
-    hangs, is_flat, minimum_cones, place, side, sides,
+    hangs, is_flat, is_within, minimum_cones, place, side, sides,
 };
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -57,6 +57,15 @@ impl MeshFacets<'_> {
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
         })
+    }
+
+    /// Returns true if a point is within the body, by two rays.
+    pub(super) fn is_within(self, point: Vector) -> bool {
+        let (rays, point) = (MeshRays(self.mesh), point.as_dvec3());
+        match self.twins {
+            Twins::All(surface, _) => surface.is_within(&rays, point, self.memo),
+            Twins::Near(_) => is_within(&rays, point, self.memo),
+        }
     }
 
     /// Returns true if an earlier triangle has the same corners.

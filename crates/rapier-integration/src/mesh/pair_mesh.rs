@@ -9,7 +9,7 @@ use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
 use super::neighbours::{MeshFacets, Neighbours, Twins};
 use super::store::{is_analysed, is_small};
-use super::view::{MeshView, nearest};
+use super::view::{MeshView, is_covered, nearest};
 
 /// State of one mesh of a pair of colliders, kept from query to query.
 #[derive(Clone, Default)]
@@ -208,6 +208,14 @@ impl<'a> LazySurface<'a> {
         let (triangle, nearest, behind) = nearest(self.view.mesh, point, bounds_nothing)?;
         let is_turned = kind == SurfaceKind::Solid && self.facets().side(triangle) == Side::Turned;
         Some((triangle, nearest, if is_turned { -behind } else { behind }))
+    }
+
+    /// Returns true if a point is within a solid, by two rays. The nearest triangle cannot tell this, as it may be of a part
+    /// that pierces the surface.
+    pub(crate) fn is_within(&self, point: Vec3) -> bool {
+        self.kind() == SurfaceKind::Solid
+            && is_covered(self.view.mesh, point)
+            && self.facets().is_within(point)
     }
 
     /// Returns true if a user declared that the mesh is a solid.

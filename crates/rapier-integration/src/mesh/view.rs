@@ -296,6 +296,12 @@ impl<'a> MeshView<'a> {
         Sphere { centre, radius: half + gamma(8) * (centre.length() + half) }
     }
 
+    /// Returns the distance of a point, up to rounding.
+    pub(crate) fn distance(&self, point: Vec3) -> Option<Real> {
+        let (_, nearest, _) = nearest(self.mesh, point, |_| false)?;
+        Some(nearest.distance(point))
+    }
+
     /// Returns the triangles for whose boxes, and the boxes above them, `overlaps` returns true.
     #[inline(always)]
     pub(crate) fn near(&self, overlaps: impl Fn(TestedBox) -> bool) -> impl Iterator<Item = u32> {

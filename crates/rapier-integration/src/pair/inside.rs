@@ -38,6 +38,8 @@ pub(crate) enum InsideTest {
     NoSolid,
     /// A point of the smaller mesh was at least this far outside at this placement of the smaller mesh.
     Outside(Placement, f64),
+    /// The larger mesh was a room at this placement of the smaller mesh, and stays a room for this motion.
+    InRoom(Placement, f64),
 }
 
 impl InsideTest {
@@ -46,14 +48,22 @@ impl InsideTest {
         Self::Outside(*placement, SURE * f64::from(distance))
     }
 
-    /// Returns true if a mesh with points in `ball` cannot have come inside.
-    fn is_outside(&self, ball: Sphere, placement: &Placement) -> bool {
+    /// The larger mesh stays a room for a motion of `slack`.
+    fn in_room(placement: &Placement, slack: f32) -> Self {
+        Self::InRoom(*placement, SURE * f64::from(slack))
+    }
+
+    /// Returns true for a mesh in a room, and false for one that cannot have come inside. `None` if the last result does not
+    /// hold for a mesh with points in `ball`.
+    fn known(&self, ball: Sphere, placement: &Placement) -> Option<bool> {
+        let holds = |before: &Placement, slack: &f64| {
+            placement.motion_bound(before, ball.centre, ball.radius) < *slack
+        };
         match self {
-            Self::Unknown => false,
-            Self::NoSolid => true,
-            Self::Outside(before, distance) => {
-                placement.motion_bound(before, ball.centre, ball.radius) < *distance
-            }
+            Self::Unknown => None,
+            Self::NoSolid => Some(false),
+            Self::Outside(before, distance) => holds(before, distance).then_some(false),
+            Self::InRoom(before, slack) => holds(before, slack).then_some(true),
         }
     }
 }
@@ -99,16 +109,36 @@ impl<'a> HeldMesh<'a> {
         if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
             return false;
         }
-        let middle = self.in_holder(held.ball().centre);
+        let (ball, placement) = (held.ball(), self.placement());
+        if let Some(is_in_room) = test.known(ball, placement) {
+            return is_in_room;
+        }
+        let middle = self.in_holder(ball.centre);
         let Some(exit) = self.exit(middle, test) else { return false };
         let depth = exit.distance(middle);
-        let way = self.pose.in_other(self.outer, exit) - held.ball().centre;
+        let way = self.pose.in_other(self.outer, exit) - ball.centre;
         let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
-        let unit = filter_unit(self.pose, filter_distance(true, held.ball().radius));
-        depth >= (1.0 - STICKS_OUT) * height
+        let unit = filter_unit(self.pose, filter_distance(true, ball.radius));
+        let is_in_room = depth >= (1.0 - STICKS_OUT) * height
             && f64::from(depth + height) >= SUNK * unit
             && !self.is_slab(middle, exit)
-            && !self.surface.is_declared_solid()
+            && !self.surface.is_declared_solid();
+        // No test above depends on more than this depth.
+        let enough = ((1.0 - STICKS_OUT) * ball.radius).max(self.least_height());
+        if is_in_room && depth > enough {
+            *test = InsideTest::in_room(placement, depth - enough);
+        }
+        is_in_room
+    }
+
+    /// Returns the placement of the held mesh in the frame of the holder.
+    fn placement(&self) -> &'a Placement {
+        [&self.pose.placement12, &self.pose.placement21][self.outer]
+    }
+
+    /// Least height of a room.
+    fn least_height(&self) -> Real {
+        SLAB * 2.0 * self.holder.sorted_extents().y
     }
 
     /// Returns a point of the held mesh in the frame of the holder.
@@ -118,7 +148,7 @@ impl<'a> HeldMesh<'a> {
 
     /// Returns true if the larger mesh is too flat for a room where `point` is in it. `exit` is the nearest point of the surface.
     fn is_slab(&self, point: Vector, exit: Vector) -> bool {
-        let most = SLAB * 2.0 * self.holder.sorted_extents().y - exit.distance(point);
+        let most = self.least_height() - exit.distance(point);
         let ray = Ray::new(point, (point - exit).normalize_or_zero());
         self::exit(self.holder.mesh, &ray, false).is_some_and(|(length, _)| length < most)
     }
@@ -126,12 +156,8 @@ impl<'a> HeldMesh<'a> {
     /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is
     /// in the frame of the larger mesh.
     fn exit(&self, point: Vector, test: &mut InsideTest) -> Option<Vector> {
-        let Self { held, holder, surface, .. } = self;
-        let PairPose { placement12, placement21, .. } = self.pose;
-        let placement = [placement12, placement21][self.outer];
-        if test.is_outside(held.ball(), placement) {
-            return None;
-        }
+        let Self { holder, surface, .. } = self;
+        let placement = self.placement();
         let from_box = holder.root().distance_to_local_point(point, true);
         if from_box > 0.0 {
             *test = InsideTest::outside(placement, from_box);
@@ -139,8 +165,10 @@ impl<'a> HeldMesh<'a> {
         }
         let is_covered = is_covered(holder.mesh, point);
         let (_, near, behind) = surface.nearest(point)?;
-        let is_inside = behind >= BEHIND && (is_covered || surface.kind() == SurfaceKind::Solid);
-        if behind < -BEHIND || !is_covered && !is_inside {
+        let is_solid = surface.kind() == SurfaceKind::Solid;
+        let is_behind = behind >= BEHIND && (is_covered || is_solid);
+        let is_inside = is_behind || surface.is_within(point);
+        if !is_inside && (behind < -BEHIND || !is_covered) {
             *test = InsideTest::outside(placement, near.distance(point));
         }
         is_inside.then_some(near)
@@ -154,6 +182,9 @@ impl<'a> HeldMesh<'a> {
         let vertex = self.in_holder(held.corners(0)[0]);
         if !is_in_both {
             if is_room {
+                return None;
+            }
+            if test.known(held.ball(), self.placement()) == Some(false) {
                 return None;
             }
             self.exit(vertex, test)?;

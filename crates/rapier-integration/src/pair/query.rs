@@ -63,6 +63,12 @@ pub(crate) trait PairQuery {
         false
     }
 
+    /// Returns a lower bound of the distance between the shapes, if one costs less than a descent. Asked for where the last
+    /// descent has found nothing.
+    fn clearance(&self) -> Option<Real> {
+        None
+    }
+
     /// Adds all pairs of subshapes within `margin`, and few others, in any order.
     fn descend(
         &mut self,

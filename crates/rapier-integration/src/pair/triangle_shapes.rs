@@ -13,6 +13,8 @@ use sbbk_core::leaf::LateralCulling;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::Facets;
 use sbbk_core::tree::Tree;
+use sbbk_core::volumes::Sphere;
+use sbbk_core::volumes::rounding::gamma;
 
 use super::pose::PairPose;
 use super::query::Moving;
@@ -107,6 +109,21 @@ impl TriangleShapes<'_> {
         let PairPose { placement12, placement21, .. } = self.pose;
         let smaller = 1 - self.larger;
         Moving { ball: self[smaller].ball(), placement: [placement21, placement12][smaller] }
+    }
+
+    /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one.
+    pub(super) fn clearance(&self) -> Option<Real> {
+        let (TriangleShape::Mesh(larger), TriangleShape::Mesh(_)) =
+            (&self[self.larger], &self[1 - self.larger])
+        else {
+            return None;
+        };
+        let Sphere { centre, radius } = self.moving().ball;
+        let placed = self.pose.in_other(1 - self.larger, centre);
+        let offset = self.pose.pos12.translation.abs().max_element();
+        let size = larger.view.magnitude() + centre.abs().max_element() + radius + offset;
+        let clearance = larger.view.distance(placed)? - radius - gamma(64) * size;
+        clearance.is_finite().then_some(clearance)
     }
 
     /// Returns the unit of the filter: the prediction distance, or less for small shapes.

@@ -124,6 +124,10 @@ impl PairQuery for TriangleQuery<'_> {
         self.shapes.reach()
     }
 
+    fn clearance(&self) -> Option<Real> {
+        self.shapes.clearance()
+    }
+
     fn descend(
         &mut self,
         margin: Real,

@@ -3,7 +3,8 @@
 //! 1. The state of the pair comes from the host's workspace ([`state`](super::state)).
 //! 2. A change of the shapes since the last query drops what no longer holds.
 //! 3. An equal pose leaves the manifolds as they are.
-//! 4. If the candidates of the last descent no longer serve, a descent finds new ones.
+//! 4. If the candidates of the last descent no longer serve, a descent finds new ones. If there were none, the distance of
+//!    the shapes may tell for how long there will be none.
 //! 5. Candidates in reach become contacts ([`PairQuery::contacts`]).
 //! 6. Contacts become manifolds: one each, or a few for all ([`write`](super::write)).
 
@@ -19,7 +20,7 @@ use crate::mesh::MeshStore;
 
 /// Way in which a query was answered.
 pub(crate) enum QueryOutcome {
-    /// By Parry's hierarchy and a box.
+    /// By Parry's hierarchy, and a box or a ball.
     Apart,
     /// By the manifolds of the last query.
     Unchanged,
@@ -86,12 +87,19 @@ fn update_contacts<Q: PairQuery>(
         return QueryOutcome::Descended;
     }
     let (moving, reach) = (query.moving(), query.reach());
+    let had_none = !memory.slack.is_new() && memory.candidates.is_empty();
     let plan = memory.slack.plan(moving.ball, moving.placement, reach, Q::SLACK);
     let (outcome, margin) = match plan {
         SlackPlan::Reuse { margin, .. } => (QueryOutcome::Reused, margin),
         SlackPlan::Descend { margin, .. } => {
-            memory.replace(|found| query.descend(margin, counts, scratch, found));
-            (QueryOutcome::Descended, margin)
+            let clearance = had_none.then(|| query.clearance()).flatten();
+            if let Some(clearance) = clearance.filter(|clearance| *clearance > margin) {
+                memory.slack.note_clear(clearance);
+                (QueryOutcome::Apart, clearance)
+            } else {
+                memory.replace(|found| query.descend(margin, counts, scratch, found));
+                (QueryOutcome::Descended, margin)
+            }
         }
     };
     let (reach, margin) = (f64::from(reach), f64::from(margin));

@@ -69,13 +69,37 @@ impl NonlinearCast<'_> {
         balls: [Sphere; 2],
     ) -> Option<Advance<FoundPair>> {
         let options = self.options(balls);
+        let [start, end] = self.meeting_of_balls(balls, &options)?;
+        let options = AdvanceOptions { start, end, ..options };
         let placement_at = |time| self.placement_at(time);
-        if self.stop_at_penetration {
+        if self.stop_at_penetration || start > f64::from(self.start) {
             return advance(bodies, placement_at, options);
         }
         advance_from_contact(bodies, placement_at, options, |pair, placement| {
             self.approaches(&Found::of_pair(pair, placement), options.start, options.tolerance)
         })
+    }
+
+    /// Returns the first and last time at which balls overlap that hold the bodies however these turn; `None` if they never do.
+    ///
+    /// The centres of motions move in straight lines. With `c` and `v` from centre 1 to centre 2, the times solve
+    /// `|c + v t| = R`. Here `R` is the sum of the radii.
+    fn meeting_of_balls(&self, balls: [Sphere; 2], options: &AdvanceOptions) -> Option<[f64; 2]> {
+        let [reach1, reach2] = [0, 1].map(|i| reach(self.motions[i], &balls[i]));
+        let [from1, from2] = self.motions.map(centre);
+        let [velocity1, velocity2] = self.motions.map(|motion| motion.linvel.as_dvec3());
+        let (between, velocity) = (from2 - from1, velocity2 - velocity1);
+        let radius = (reach1 + reach2) * (1.0 + STRETCH) + options.tolerance;
+        let speed2 = velocity.length_squared();
+        let square = radius * radius * speed2 - between.cross(velocity).length_squared();
+        if square < 0.0 || speed2 == 0.0 && between.length() > radius {
+            return None;
+        }
+        let (middle, half) = (-between.dot(velocity) / speed2, square.sqrt() / speed2);
+        // A number that is not finite bounds nothing: `max` and `min` drop NaN.
+        let [start, end] = [options.start.max(middle - half), options.end.min(middle + half)];
+        let is_empty = start > end && options.start <= options.end;
+        (!is_empty).then_some([start, end])
     }
 
     /// Returns the hit of an impact.

@@ -131,6 +131,11 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).side(triangle)
 }
 
+/// Returns true if a point is within the body, by two rays.
+pub fn is_within(triangles: &impl RayTriangles, point: DVec3, memo: &PlaceMemo) -> bool {
+    RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).is_within(point)
+}
+
 /// Limit of the tests for walls. Walls count as faces beyond this limit.
 #[derive(Clone, Copy)]
 pub(super) struct WallLimit {
@@ -200,6 +205,13 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         };
         let is_face = side == Side::Inner && self.is_partly_outside(triangle, is_inner_at);
         if is_face { Side::Outer } else { side }
+    }
+
+    /// Returns true if a point is within the body.
+    pub(super) fn is_within(&self, point: DVec3) -> bool {
+        let Some(rays) = Rays::from_point(self, point) else { return false };
+        let winding = |i| rays.winding(i, |other| self.counts(other));
+        (0..2).all(|i| winding(i).is_none_or(|winding| winding >= 1))
     }
 
     /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
@@ -354,6 +366,25 @@ fn middle([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*a + *b + *c) / 3.0
 }
 
+/// Direction `i` of a sequence, whose third coordinate is at least `least`.
+fn direction(i: f64, least: f64) -> [f64; 3] {
+    let [u, v] = [1, 2].map(|dimension| sequence(i, dimension));
+    let height = least + (1.0 - least) * v;
+    let (sin, cos) = (TAU * u).sin_cos();
+    let flat = (1.0 - height * height).max(0.0).sqrt();
+    [flat * cos, flat * sin, height]
+}
+
+/// Returns the direction whose line through a point has the shortest part within bounds.
+fn shortest(ways: impl Iterator<Item = DVec3>, start: DVec3, bounds: [DVec3; 2]) -> Option<DVec3> {
+    let [low, high] = bounds.map(|corner| corner - start);
+    let length = |way: DVec3| {
+        let [one, other] = [low, high].map(|corner| corner / way);
+        one.max(other).min_element() - one.min(other).max_element()
+    };
+    ways.min_by(|&a, &b| length(a).total_cmp(&length(b)))
+}
+
 /// A triangle that a ray meets.
 struct Hit {
     length: f64,
@@ -389,20 +420,25 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         let (across, along) = up.any_orthonormal_pair();
         let ways = (of * i..of * (i + 1)).map(|i| {
             let key = f64::from(i) + f64::from(SHIFT * (triangle % SHIFTS));
-            let [u, v] = [1, 2].map(|dimension| sequence(key, dimension));
-            let height = steep + (1.0 - steep) * v;
-            let (sin, cos) = (TAU * u).sin_cos();
-            let flat = (1.0 - height * height).max(0.0).sqrt();
-            height * up + flat * (cos * across + sin * along)
+            let [x, y, z] = direction(key, steep);
+            z * up + x * across + y * along
         });
-        let [low, high] = mesh.triangles.bounds().map(|corner| corner - start);
-        let length = |way: DVec3| {
-            let [one, other] = [low, high].map(|corner| corner / way);
-            one.max(other).min_element() - one.min(other).max_element()
-        };
-        let to_front = ways.min_by(|&a, &b| length(a).total_cmp(&length(b)))?;
+        let to_front = shortest(ways, start, mesh.triangles.bounds())?;
         let skipped = OFFSET * longest_side(&corners) / up.dot(to_front);
         Some(Self { mesh, start, to_front, skipped, hits: Default::default() })
+    }
+
+    /// Two opposite rays from a point; `None` for a point that is not finite.
+    fn from_point(mesh: &'a RayMesh<'a, T>, start: DVec3) -> Option<Self> {
+        let ways = (0..STEEP.of).map(|i| direction(i.into(), 0.0).into());
+        let to_front = shortest(ways, start, mesh.triangles.bounds())?;
+        start.is_finite().then(|| Self {
+            mesh,
+            start,
+            to_front,
+            skipped: 0.0,
+            hits: Default::default(),
+        })
     }
 
     /// Returns the side that the rays find. Walls within the body count as nothing, unless the rays find a face with them.

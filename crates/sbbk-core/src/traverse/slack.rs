@@ -100,6 +100,16 @@ impl Slack {
         SlackPlan::Descend { margin, travel: std::mem::take(&mut self.travel) }
     }
 
+    /// Returns true before the first query.
+    pub fn is_new(&self) -> bool {
+        self.last.is_none()
+    }
+
+    /// Notes that nothing was within `margin` at the last query. The next queries then plan no descent.
+    pub fn note_clear(&mut self, margin: f32) {
+        self.descent = self.last.map(|placement| (placement, margin));
+    }
+
     /// Length of the path of points since the last descent, an upper bound: distances have shrunk
     /// by at most this much between any two queries since.
     pub fn travel(&self) -> f64 {

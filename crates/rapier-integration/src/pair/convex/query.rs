@@ -17,7 +17,7 @@ use super::pair::ConvexPair;
 use super::parts::{Part, PartData, Parts, PlacedPart};
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::mesh::{BEHIND, Change, LazySurface, PairMesh};
+use crate::mesh::{Change, LazySurface, PairMesh};
 use crate::pair::pose::PairPose;
 use crate::pair::query::{
     ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory,
@@ -291,11 +291,11 @@ impl ConvexQuery<'_> {
         part: u32,
         scratch: &mut ConvexScratch,
     ) -> bool {
-        let behind = self.pair.parts.with(part, |shape| {
+        let is_within = self.pair.parts.with(part, |shape| {
             let middle = self.placed(part, &shape, scratch).in_mesh(shape.shape.middle()?);
-            Some(surface.nearest(middle)?.2)
+            Some(surface.is_within(middle))
         });
-        behind.flatten().is_some_and(|behind| behind >= BEHIND)
+        is_within.flatten() == Some(true)
     }
 
     /// Returns the contact of a candidate within the prediction distance.
