@@ -197,7 +197,7 @@ impl<'a> LazySurface<'a> {
     }
 
     /// Returns the triangle nearest to a point, the nearest point, and the cosine between the direction to `point`
-    /// and the inward normal. Leaves out triangles that do not bound the body of a closed mesh.
+    /// and the normal that leads into the body. Leaves out triangles that do not bound the body of a closed mesh.
     pub(crate) fn nearest(&self, point: Vec3) -> Option<(u32, Vec3, Real)> {
         let kind = self.kind();
         let bounds_nothing = |triangle| match self.around(triangle).side {
@@ -206,16 +206,17 @@ impl<'a> LazySurface<'a> {
             Side::Outer | Side::Turned => false,
         };
         let (triangle, nearest, behind) = nearest(self.view.mesh, point, bounds_nothing)?;
-        let is_turned = kind == SurfaceKind::Solid && self.facets().side(triangle) == Side::Turned;
+        let is_turned = kind != SurfaceKind::Sheet && self.facets().side(triangle) == Side::Turned;
         Some((triangle, nearest, if is_turned { -behind } else { behind }))
     }
 
-    /// Returns true if a point is within a solid, by two rays. The nearest triangle cannot tell this, as it may be of a part
+    /// Returns true if a point is within a closed mesh, by two rays. The nearest triangle cannot tell this, as it may be of a part
     /// that pierces the surface.
     pub(crate) fn is_within(&self, point: Vec3) -> bool {
-        self.kind() == SurfaceKind::Solid
+        let kind = self.kind();
+        kind != SurfaceKind::Sheet
             && is_covered(self.view.mesh, point)
-            && self.facets().is_within(point)
+            && self.facets().is_within(kind, point)
     }
 
     /// Returns true if a user declared that the mesh is a solid.

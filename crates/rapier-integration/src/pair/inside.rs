@@ -8,7 +8,7 @@ use sbbk_core::volumes::Sphere;
 
 use super::pose::PairPose;
 use super::triangle_contacts::in_local;
-use super::triangle_shape::{MeshShape, TriangleShape};
+use super::triangle_shape::{MeshShape, Room, TriangleShape};
 use super::triangle_shapes::{
     TriangleHit, TriangleShapes, TriangleSurfaceContact, filter_distance, filter_unit,
 };
@@ -77,7 +77,7 @@ pub(super) struct HeldMesh<'a> {
     surface: &'a LazySurface<'a>,
     /// 0 if the holder is shape 1, else 1.
     outer: usize,
-    is_room: bool,
+    room: Room,
 }
 
 impl<'a> HeldMesh<'a> {
@@ -87,8 +87,7 @@ impl<'a> HeldMesh<'a> {
         let TriangleShape::Mesh(MeshShape { view: held, .. }) = &shapes[1 - outer] else {
             return None;
         };
-        let TriangleShape::Mesh(MeshShape { view: holder, surface, is_room }) = &shapes[outer]
-        else {
+        let TriangleShape::Mesh(MeshShape { view: holder, surface, room }) = &shapes[outer] else {
             return None;
         };
         Some(Self {
@@ -97,14 +96,25 @@ impl<'a> HeldMesh<'a> {
             holder,
             surface: surface.as_ref()?,
             outer,
-            is_room: *is_room,
+            room: *room,
         })
     }
 
-    /// Returns true if the larger mesh is a room for the smaller one: the smaller one is in it, or
-    /// hardly sticks out. A long tube is a room although its ends are open. Flat solids are no rooms, nor are
-    /// solids that thin bodies have just sunk in.
-    pub(super) fn is_in_room(&self, test: &mut InsideTest) -> bool {
+    /// Returns the room that the larger mesh is for the smaller one. The middle of the smaller one is in it.
+    pub(super) fn room(&self, test: &mut InsideTest) -> Room {
+        if !self.is_in_room(test) {
+            Room::No
+        } else if self.faces_in() {
+            Room::FacingIn
+        } else {
+            Room::FacingOut
+        }
+    }
+
+    /// Returns true if the larger mesh is a room for the smaller one. If faces lead out, the smaller one hardly sticks out. A
+    /// long tube is a room although its ends are open. Flat solids are no rooms, nor are solids that thin bodies have just
+    /// sunk in.
+    fn is_in_room(&self, test: &mut InsideTest) -> bool {
         let Self { held, holder, .. } = self;
         if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
             return false;
@@ -116,6 +126,10 @@ impl<'a> HeldMesh<'a> {
         let middle = self.in_holder(ball.centre);
         let Some(exit) = self.exit(middle, test) else { return false };
         let depth = exit.distance(middle);
+        if self.faces_in() {
+            *test = InsideTest::in_room(placement, depth);
+            return true;
+        }
         let way = self.pose.in_other(self.outer, exit) - ball.centre;
         let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
         let unit = filter_unit(self.pose, filter_distance(true, ball.radius));
@@ -129,6 +143,10 @@ impl<'a> HeldMesh<'a> {
             *test = InsideTest::in_room(placement, depth - enough);
         }
         is_in_room
+    }
+
+    fn faces_in(&self) -> bool {
+        self.surface.kind() == SurfaceKind::InsideOut
     }
 
     /// Returns the placement of the held mesh in the frame of the holder.
@@ -165,8 +183,8 @@ impl<'a> HeldMesh<'a> {
         }
         let is_covered = is_covered(holder.mesh, point);
         let (_, near, behind) = surface.nearest(point)?;
-        let is_solid = surface.kind() == SurfaceKind::Solid;
-        let is_behind = behind >= BEHIND && (is_covered || is_solid);
+        let is_closed = surface.kind() != SurfaceKind::Sheet;
+        let is_behind = behind >= BEHIND && (is_covered || is_closed);
         let is_inside = is_behind || surface.is_within(point);
         if !is_inside && (behind < -BEHIND || !is_covered) {
             *test = InsideTest::outside(placement, near.distance(point));
@@ -178,10 +196,10 @@ impl<'a> HeldMesh<'a> {
     ///
     /// Tests one vertex, unless the middle is known to be in both: a mesh that pierces the surface has contacts.
     pub(super) fn push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
-        let Self { pose, held, holder, surface, outer, is_room } = *self;
+        let Self { pose, held, holder, surface, outer, room } = *self;
         let vertex = self.in_holder(held.corners(0)[0]);
         if !is_in_both {
-            if is_room {
+            if room != Room::No {
                 return None;
             }
             if test.known(held.ball(), self.placement()) == Some(false) {

@@ -19,7 +19,7 @@ use super::inside::{HeldMesh, InsideTest};
 use super::pose::PairPose;
 use super::query::Pair;
 use super::reduce::PatchPlan;
-use super::triangle_shape::{FieldShape, MeshShape, TriangleShape};
+use super::triangle_shape::{FieldShape, MeshShape, Room, TriangleShape};
 use super::triangle_shapes::{Hint, TriangleShapes, filter_distance};
 use super::triangles::TriangleQuery;
 use crate::SbbkConfig;
@@ -98,7 +98,7 @@ impl MeshPair<'_> {
                 let surface = is_needed.then(|| known.mesh.acquire(view, are_meshes)).flatten();
                 let tree = surface.as_ref().and_then(LazySurface::tree);
                 let surface = surface.filter(|_| has_surfaces);
-                (TriangleShape::Mesh(MeshShape { view, surface, is_room: false }), tree)
+                (TriangleShape::Mesh(MeshShape { view, surface, room: Room::No }), tree)
             }
             ShapeView::Field(field) => {
                 let is_solid = self.config.solid_height_fields && field.points_up();
@@ -139,9 +139,9 @@ impl<'a> Pair for MeshPair<'a> {
             filter_distance: filter_distance(self.has_surfaces(), radius),
             reach: OnceLock::new(),
         };
-        let is_in_room = HeldMesh::of(&shapes).is_some_and(|mesh| mesh.is_in_room(in_room));
+        let room = HeldMesh::of(&shapes).map_or(Room::No, |mesh| mesh.room(in_room));
         if let TriangleShape::Mesh(mesh) = &mut shapes.shapes[shapes.larger] {
-            mesh.is_room = is_in_room;
+            mesh.room = room;
         }
         let has_patches = self.config.has_patches() && self.are_rigid();
         let patches = has_patches.then(|| PatchPlan::new(self.pose.prediction, radius));

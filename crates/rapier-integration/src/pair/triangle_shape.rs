@@ -27,8 +27,17 @@ pub(crate) struct MeshShape<'q> {
     pub(super) view: &'q MeshView<'q>,
     /// Set for contacts of surfaces.
     pub(super) surface: Option<LazySurface<'q>>,
-    /// True if the mesh is a room for the other shape, and has no inside.
-    pub(super) is_room: bool,
+    pub(super) room: Room,
+}
+
+/// Tells if a mesh is a room for the other shape, and has no inside.
+#[derive(Copy, Clone, PartialEq)]
+pub(super) enum Room {
+    No,
+    /// Faces lead away from the room. They collide on both sides, as what stands in the room has faces of its own.
+    FacingOut,
+    /// Faces lead into the room, so the body is behind them.
+    FacingIn,
 }
 
 /// A height field.
@@ -70,9 +79,13 @@ impl TriangleShape<'_> {
     #[inline]
     pub(super) fn around(&self, triangle: u32) -> Option<Around<ShapeFacets<'_>>> {
         match self {
-            Self::Mesh(MeshShape { surface, is_room, .. }) => {
+            Self::Mesh(MeshShape { surface, room, .. }) => {
                 let Around { facets, side } = surface.as_ref()?.around(triangle);
-                let side = if *is_room { Side::Sheet } else { side };
+                let side = match (room, side) {
+                    (Room::FacingOut, _) => Side::Sheet,
+                    (Room::FacingIn, Side::Turned) => Side::Outer,
+                    _ => side,
+                };
                 Some(Around { facets: ShapeFacets::Mesh(facets), side })
             }
             Self::Field(FieldShape { field, side, .. }) => {
@@ -84,9 +97,9 @@ impl TriangleShape<'_> {
     /// Returns true if the shape has an inside. Only contacts of surfaces ask for it.
     pub(super) fn is_solid(&self) -> bool {
         match self {
-            Self::Mesh(MeshShape { surface, is_room, .. }) => {
+            Self::Mesh(MeshShape { surface, room, .. }) => {
                 let is_solid = |surface: &LazySurface<'_>| surface.kind() == SurfaceKind::Solid;
-                !is_room && surface.as_ref().is_some_and(is_solid)
+                *room == Room::No && surface.as_ref().is_some_and(is_solid)
             }
             Self::Field(FieldShape { side, .. }) => *side == Some(Side::Outer),
         }

@@ -74,11 +74,11 @@ impl Surface {
             .side(triangle)
     }
 
-    /// Returns true if a point is within the body, as [`is_within`](is_within()) does. Takes less time, as rays count closed
+    /// Returns true if a point is within the body of a closed mesh, as [`is_within`](is_within()) does. Takes less time, as rays count closed
     /// components as they are.
     pub fn is_within(&self, triangles: &impl RayTriangles, point: DVec3, memo: &PlaceMemo) -> bool {
         sides::RayMesh::new(triangles, self.open.as_ref(), memo, sides::WallLimit::SIDE)
-            .is_within(point)
+            .is_within(self.kind, point)
     }
 
     /// True if other triangles have the contacts of a triangle. An earlier one may have the same corners, in either winding. A

@@ -131,9 +131,14 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).side(triangle)
 }
 
-/// Returns true if a point is within the body, by two rays.
-pub fn is_within(triangles: &impl RayTriangles, point: DVec3, memo: &PlaceMemo) -> bool {
-    RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).is_within(point)
+/// Returns true if a point is within the body of a closed mesh, by two rays.
+pub fn is_within(
+    triangles: &impl RayTriangles,
+    kind: SurfaceKind,
+    point: DVec3,
+    memo: &PlaceMemo,
+) -> bool {
+    RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).is_within(kind, point)
 }
 
 /// Limit of the tests for walls. Walls count as faces beyond this limit.
@@ -207,11 +212,16 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         if is_face { Side::Outer } else { side }
     }
 
-    /// Returns true if a point is within the body.
-    pub(super) fn is_within(&self, point: DVec3) -> bool {
+    /// Returns true if a point is within the body of a closed mesh.
+    pub(super) fn is_within(&self, kind: SurfaceKind, point: DVec3) -> bool {
+        let sign = match kind {
+            SurfaceKind::Solid => 1,
+            SurfaceKind::InsideOut => -1,
+            SurfaceKind::Sheet => return false,
+        };
         let Some(rays) = Rays::from_point(self, point) else { return false };
         let winding = |i| rays.winding(i, |other| self.counts(other));
-        (0..2).all(|i| winding(i).is_none_or(|winding| winding >= 1))
+        (0..2).all(|i| winding(i).is_none_or(|winding| sign * winding >= 1))
     }
 
     /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
