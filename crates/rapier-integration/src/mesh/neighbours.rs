@@ -12,7 +12,7 @@ use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
     Around, Facets, MinimumCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
-    SurfaceKind, hangs, is_flat, is_within, minimum_cones, place, side, sides,
+    hangs, is_flat, minimum_cones, place, side, sides, winding_sign,
 };
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -59,12 +59,12 @@ impl MeshFacets<'_> {
         })
     }
 
-    /// Returns true if a point is within the body of a closed mesh, by two rays.
-    pub(super) fn is_within(self, kind: SurfaceKind, point: Vector) -> bool {
+    /// Returns the sign of the winding number of a closed mesh around a point, by two rays.
+    pub(super) fn winding_sign(self, point: Vector) -> i32 {
         let (rays, point) = (MeshRays(self.mesh), point.as_dvec3());
         match self.twins {
-            Twins::All(surface, _) => surface.is_within(&rays, point, self.memo),
-            Twins::Near(_) => is_within(&rays, kind, point, self.memo),
+            Twins::All(surface, _) => surface.winding_sign(&rays, point, self.memo),
+            Twins::Near(_) => winding_sign(&rays, point, self.memo),
         }
     }
 

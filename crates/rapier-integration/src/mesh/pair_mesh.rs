@@ -210,13 +210,11 @@ impl<'a> LazySurface<'a> {
         Some((triangle, nearest, if is_turned { -behind } else { behind }))
     }
 
-    /// Returns true if a point is within a closed mesh, by two rays. The nearest triangle cannot tell this, as it may be of a part
-    /// that pierces the surface.
-    pub(crate) fn is_within(&self, point: Vec3) -> bool {
-        let kind = self.kind();
-        kind != SurfaceKind::Sheet
-            && is_covered(self.view.mesh, point)
-            && self.facets().is_within(kind, point)
+    /// Returns the sign of the winding number around a point: 1 within a body, -1 within faces that lead inwards, 0 elsewhere and
+    /// for a sheet. The nearest triangle cannot tell the sign, as it may be of a part that pierces the surface.
+    pub(crate) fn winding_sign(&self, point: Vec3) -> i32 {
+        let may_be_within = self.kind() != SurfaceKind::Sheet && is_covered(self.view.mesh, point);
+        if may_be_within { self.facets().winding_sign(point) } else { 0 }
     }
 
     /// Returns true if a user declared that the mesh is a solid.

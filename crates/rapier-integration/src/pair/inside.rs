@@ -38,8 +38,8 @@ pub(crate) enum InsideTest {
     NoSolid,
     /// A point of the smaller mesh was at least this far outside at this placement of the smaller mesh.
     Outside(Placement, f64),
-    /// The larger mesh was a room at this placement of the smaller mesh, and stays a room for this motion.
-    InRoom(Placement, f64),
+    /// The larger mesh was a room at this placement of the smaller mesh, and stays that room for this motion.
+    Room(Room, Placement, f64),
 }
 
 impl InsideTest {
@@ -48,22 +48,16 @@ impl InsideTest {
         Self::Outside(*placement, SURE * f64::from(distance))
     }
 
-    /// The larger mesh stays a room for a motion of `slack`.
-    fn in_room(placement: &Placement, slack: f32) -> Self {
-        Self::InRoom(*placement, SURE * f64::from(slack))
-    }
-
-    /// Returns true for a mesh in a room, and false for one that cannot have come inside. `None` if the last result does not
-    /// hold for a mesh with points in `ball`.
-    fn known(&self, ball: Sphere, placement: &Placement) -> Option<bool> {
+    /// Returns the room that holds a mesh. `None` if the last result does not hold for a mesh with points in `ball`.
+    fn known(&self, ball: Sphere, placement: &Placement) -> Option<Room> {
         let holds = |before: &Placement, slack: &f64| {
             placement.motion_bound(before, ball.centre, ball.radius) < *slack
         };
         match self {
             Self::Unknown => None,
-            Self::NoSolid => Some(false),
-            Self::Outside(before, distance) => holds(before, distance).then_some(false),
-            Self::InRoom(before, slack) => holds(before, slack).then_some(true),
+            Self::NoSolid => Some(Room::No),
+            Self::Outside(before, distance) => holds(before, distance).then_some(Room::No),
+            Self::Room(room, before, slack) => holds(before, slack).then_some(*room),
         }
     }
 }
@@ -102,34 +96,32 @@ impl<'a> HeldMesh<'a> {
 
     /// Returns the room that the larger mesh is for the smaller one. The middle of the smaller one is in it.
     pub(super) fn room(&self, test: &mut InsideTest) -> Room {
-        if !self.is_in_room(test) {
-            Room::No
-        } else if self.faces_in() {
-            Room::FacingIn
-        } else {
-            Room::FacingOut
-        }
-    }
-
-    /// Returns true if the larger mesh is a room for the smaller one. If faces lead out, the smaller one hardly sticks out. A
-    /// long tube is a room although its ends are open. Flat solids are no rooms, nor are solids that thin bodies have just
-    /// sunk in.
-    fn is_in_room(&self, test: &mut InsideTest) -> bool {
         let Self { held, holder, .. } = self;
         if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
-            return false;
+            return Room::No;
         }
         let (ball, placement) = (held.ball(), self.placement());
-        if let Some(is_in_room) = test.known(ball, placement) {
-            return is_in_room;
+        if let Some(room) = test.known(ball, placement) {
+            return room;
         }
         let middle = self.in_holder(ball.centre);
-        let Some(exit) = self.exit(middle, test) else { return false };
-        let depth = exit.distance(middle);
-        if self.faces_in() {
-            *test = InsideTest::in_room(placement, depth);
-            return true;
+        let Some((exit, room)) = self.exit(middle, test) else { return Room::No };
+        let slack = match room {
+            Room::FacingOut => self.slack_in_room(middle, exit),
+            _ => Some(exit.distance(middle)),
+        };
+        if let Some(slack) = slack.filter(|slack| *slack > 0.0) {
+            *test = InsideTest::Room(room, *placement, SURE * f64::from(slack));
         }
+        if slack.is_some() { room } else { Room::No }
+    }
+
+    /// Returns a motion for which a room whose faces lead out stays a room; `None` if it is none. The held mesh hardly sticks
+    /// out of a room. A long tube is a room although its ends are open. Flat solids are no rooms, nor are solids that thin
+    /// bodies have just sunk in.
+    fn slack_in_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
+        let (held, ball) = (self.held, self.held.ball());
+        let depth = exit.distance(middle);
         let way = self.pose.in_other(self.outer, exit) - ball.centre;
         let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
         let unit = filter_unit(self.pose, filter_distance(true, ball.radius));
@@ -139,14 +131,7 @@ impl<'a> HeldMesh<'a> {
             && !self.surface.is_declared_solid();
         // No test above depends on more than this depth.
         let enough = ((1.0 - STICKS_OUT) * ball.radius).max(self.least_height());
-        if is_in_room && depth > enough {
-            *test = InsideTest::in_room(placement, depth - enough);
-        }
-        is_in_room
-    }
-
-    fn faces_in(&self) -> bool {
-        self.surface.kind() == SurfaceKind::InsideOut
+        is_in_room.then_some(depth - enough)
     }
 
     /// Returns the placement of the held mesh in the frame of the holder.
@@ -171,9 +156,9 @@ impl<'a> HeldMesh<'a> {
         self::exit(self.holder.mesh, &ray, false).is_some_and(|(length, _)| length < most)
     }
 
-    /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is
-    /// in the frame of the larger mesh.
-    fn exit(&self, point: Vector, test: &mut InsideTest) -> Option<Vector> {
+    /// Returns the nearest point of the larger mesh, and the room that it may be, if a point of the smaller one is inside. `point`
+    /// is in the frame of the larger mesh.
+    fn exit(&self, point: Vector, test: &mut InsideTest) -> Option<(Vector, Room)> {
         let Self { holder, surface, .. } = self;
         let placement = self.placement();
         let from_box = holder.root().distance_to_local_point(point, true);
@@ -183,13 +168,20 @@ impl<'a> HeldMesh<'a> {
         }
         let is_covered = is_covered(holder.mesh, point);
         let (_, near, behind) = surface.nearest(point)?;
-        let is_closed = surface.kind() != SurfaceKind::Sheet;
-        let is_behind = behind >= BEHIND && (is_covered || is_closed);
-        let is_inside = is_behind || surface.is_within(point);
-        if !is_inside && (behind < -BEHIND || !is_covered) {
+        let kind = surface.kind();
+        let is_behind = behind >= BEHIND && (is_covered || kind != SurfaceKind::Sheet);
+        let room = match surface.winding_sign(point) {
+            1.. => Room::FacingOut,
+            ..0 => Room::FacingIn,
+            // A ray may leave through a hole, or through the open end of a tube.
+            0 if !is_behind => Room::No,
+            0 if kind == SurfaceKind::InsideOut => Room::FacingIn,
+            0 => Room::FacingOut,
+        };
+        if room == Room::No && (behind < -BEHIND || !is_covered) {
             *test = InsideTest::outside(placement, near.distance(point));
         }
-        is_inside.then_some(near)
+        (room != Room::No).then_some((near, room))
     }
 
     /// Returns the contact that leads the held mesh out of a solid, by the shortest way from its middle.
@@ -202,7 +194,7 @@ impl<'a> HeldMesh<'a> {
             if room != Room::No {
                 return None;
             }
-            if test.known(held.ball(), self.placement()) == Some(false) {
+            if test.known(held.ball(), self.placement()) == Some(Room::No) {
                 return None;
             }
             self.exit(vertex, test)?;

@@ -31,8 +31,8 @@ pub(crate) struct MeshShape<'q> {
 }
 
 /// Tells if a mesh is a room for the other shape, and has no inside.
-#[derive(Copy, Clone, PartialEq)]
-pub(super) enum Room {
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub(crate) enum Room {
     No,
     /// Faces lead away from the room. They collide on both sides, as what stands in the room has faces of its own.
     FacingOut,

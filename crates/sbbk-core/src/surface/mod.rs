@@ -17,7 +17,7 @@ mod twins;
 pub use cones::MinimumCones;
 pub use facets::Facets;
 pub use one_ring::Around;
-pub use sides::{RayTriangles, Side, SurfaceKind, is_within, kind, side};
+pub use sides::{RayTriangles, Side, SurfaceKind, kind, side, winding_sign};
 pub use slopes::PlaceMemo;
 pub use spread::minimum_cones;
 pub use twins::{Place, hangs, is_flat, place, sides};
@@ -74,11 +74,16 @@ impl Surface {
             .side(triangle)
     }
 
-    /// Returns true if a point is within the body of a closed mesh, as [`is_within`](is_within()) does. Takes less time, as rays count closed
-    /// components as they are.
-    pub fn is_within(&self, triangles: &impl RayTriangles, point: DVec3, memo: &PlaceMemo) -> bool {
+    /// Returns the sign of the winding number around a point as [`winding_sign`](winding_sign()) does. Takes less time, as
+    /// rays count closed components as they are.
+    pub fn winding_sign(
+        &self,
+        triangles: &impl RayTriangles,
+        point: DVec3,
+        memo: &PlaceMemo,
+    ) -> i32 {
         sides::RayMesh::new(triangles, self.open.as_ref(), memo, sides::WallLimit::SIDE)
-            .is_within(self.kind, point)
+            .winding_sign(point)
     }
 
     /// True if other triangles have the contacts of a triangle. An earlier one may have the same corners, in either winding. A

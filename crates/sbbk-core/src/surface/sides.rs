@@ -131,14 +131,10 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).side(triangle)
 }
 
-/// Returns true if a point is within the body of a closed mesh, by two rays.
-pub fn is_within(
-    triangles: &impl RayTriangles,
-    kind: SurfaceKind,
-    point: DVec3,
-    memo: &PlaceMemo,
-) -> bool {
-    RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).is_within(kind, point)
+/// Returns the sign of the winding number of a closed mesh around a point, by two rays: 1 within the body, -1 within faces that
+/// lead inwards, 0 elsewhere.
+pub fn winding_sign(triangles: &impl RayTriangles, point: DVec3, memo: &PlaceMemo) -> i32 {
+    RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).winding_sign(point)
 }
 
 /// Limit of the tests for walls. Walls count as faces beyond this limit.
@@ -212,16 +208,12 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         if is_face { Side::Outer } else { side }
     }
 
-    /// Returns true if a point is within the body of a closed mesh.
-    pub(super) fn is_within(&self, kind: SurfaceKind, point: DVec3) -> bool {
-        let sign = match kind {
-            SurfaceKind::Solid => 1,
-            SurfaceKind::InsideOut => -1,
-            SurfaceKind::Sheet => return false,
-        };
-        let Some(rays) = Rays::from_point(self, point) else { return false };
-        let winding = |i| rays.winding(i, |other| self.counts(other));
-        (0..2).all(|i| winding(i).is_none_or(|winding| sign * winding >= 1))
+    /// Returns the sign of the winding number around a point; 0 if two rays disagree. Many layers count as a body.
+    pub(super) fn winding_sign(&self, point: DVec3) -> i32 {
+        let Some(rays) = Rays::from_point(self, point) else { return 0 };
+        let sign = |i| rays.winding(i, |other| self.counts(other)).map_or(1, i32::signum);
+        let [one, other] = [0, 1].map(sign);
+        if one == other { one } else { 0 }
     }
 
     /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
