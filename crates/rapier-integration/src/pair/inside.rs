@@ -116,8 +116,8 @@ impl<'a> HeldMesh<'a> {
         if slack.is_some() { room } else { Room::No }
     }
 
-    /// Returns a motion for which a room whose faces lead out stays a room; `None` if it is none. The held mesh hardly sticks
-    /// out of a room. A long tube is a room although its ends are open. Flat solids are no rooms, nor are solids that thin
+    /// Returns a motion for which a mesh whose faces lead out stays a room. `None` if the mesh is no room. The held mesh hardly
+    /// sticks out of a room. A long tube is a room although its ends are open. Flat solids are no rooms, nor are solids that thin
     /// bodies have just sunk in.
     fn slack_in_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
         let (held, ball) = (self.held, self.held.ball());

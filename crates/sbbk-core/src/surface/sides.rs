@@ -131,8 +131,8 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).side(triangle)
 }
 
-/// Returns the sign of the winding number of a closed mesh around a point, by two rays: 1 within the body, -1 within faces that
-/// lead inwards, 0 elsewhere.
+/// Returns the sign of the winding number of a closed mesh around a point, by two rays. It is 1 within the body, -1 within faces
+/// that lead inwards, and 0 elsewhere.
 pub fn winding_sign(triangles: &impl RayTriangles, point: DVec3, memo: &PlaceMemo) -> i32 {
     RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).winding_sign(point)
 }
