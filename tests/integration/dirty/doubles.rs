@@ -1,9 +1,13 @@
-use glamx::Vec3;
+use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::ColliderBuilder;
 use rapier3d::parry::shape::TriMesh;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{Pair, Question, assert_same, every, shape, touching};
+use crate::support::{Pair, Question, assert_same, every, rotation, shape, touching};
+use crate::worlds::{after, on_ground};
 
 /// The mesh with all its triangles a number of times.
 fn repeated(mesh: &Mesh, times: usize) -> Mesh {
@@ -39,4 +43,24 @@ fn doubles_change_no_contact() {
         }
     }
     assert!(contacts > 500, "{contacts}");
+}
+
+/// Balls that fall at 6 m/s on a floor with triangles for either side. Would catch a side that is preferred, as its triangles come
+/// first.
+#[test]
+fn fast_bodies_stay_above_two_sided_floors() {
+    let [up, down] = [mesh::floor(6.0, 2), mesh::turned_inside_out(mesh::floor(6.0, 2))];
+    let ball = mesh::ball(0.15, 8).shape();
+    let mut random = Rand32::new(2);
+    for floor in [[up.clone(), down.clone()], [down, up]] {
+        let floor = Mesh::merged("floor", &floor).shape();
+        for i in 0..100 {
+            let start = Vec3::new(0.3, 0.3 + 0.001 * i as f32, 0.2);
+            let pose = Pose3::from_parts(start, rotation(&mut random));
+            let moving = RigidBodyBuilder::dynamic().pose(pose).linvel(-6.0 * Vec3::Y);
+            let world = on_ground(ColliderBuilder::new(floor.clone()), SbbkDispatcher::default());
+            let end = after(60, world, moving, ColliderBuilder::new(ball.clone())).translation();
+            assert!(end.y > 0.0, "the ball from {start} is at {end}");
+        }
+    }
 }

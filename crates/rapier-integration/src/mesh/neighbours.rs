@@ -76,6 +76,20 @@ impl MeshFacets<'_> {
         }
     }
 
+    /// Returns true if a triangle has a double that is wound the other way.
+    pub(crate) fn is_two_sided(self, triangle: u32) -> bool {
+        let may_have_double = match self.twins {
+            Twins::All(surface, _) => surface.has_doubles(),
+            Twins::Near(_) => true,
+        };
+        let corners = |triangle: u32| *self.mesh.triangle(triangle).vertices();
+        let [a, b, c] = corners(triangle);
+        let backs = [[a, c, b], [c, b, a], [b, a, c]];
+        let bounds = self.mesh.triangle(triangle).local_aabb();
+        may_have_double
+            && self.mesh.bvh().intersect_aabb(&bounds).any(|other| backs.contains(&corners(other)))
+    }
+
     /// Returns the first triangle of a crowd or a small component. If that triangle is a face, so are all.
     fn first_of_crowd(self, triangle: u32) -> Option<u32> {
         let Twins::All(surface, _) = self.twins else { return None };

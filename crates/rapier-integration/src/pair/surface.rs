@@ -430,7 +430,20 @@ impl<'a> SurfaceFilter<'a> {
             _ => (normal, self.shapes.pose.placement12.inverse * normal),
         };
         let half_height = own.abs().dot(self.shapes[solid].bounds().half_extents().as_dvec3());
-        Some(SheetSide { shape: Some(1 - solid), away, height: height + LEAN * half_height })
+        let leaning = height + LEAN * half_height;
+        // The box may be much higher than the shape.
+        let is_doubtful = height < 0.0 && leaning > 0.0;
+        let height = if is_doubtful { self.leaning(1 - solid, height, own) } else { leaning };
+        Some(SheetSide { shape: Some(1 - solid), away, height })
+    }
+
+    /// Returns the height of the middle of a solid over the front of a triangle, with a preference for that side. `normal` is the
+    /// normal of the triangle in the frame of the solid. A triangle with a double that is wound the other way has no front.
+    fn leaning(&self, sheet: usize, height: f64, normal: DVec3) -> f64 {
+        if self.shapes[sheet].is_two_sided(self.pair[sheet]) {
+            return height;
+        }
+        height + LEAN * f64::from(self.shapes[1 - sheet].height(normal.as_vec3()))
     }
 
     /// Returns true if a contact is deep since a point is far inside, not since this triangle is on

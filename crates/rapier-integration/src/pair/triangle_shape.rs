@@ -94,6 +94,12 @@ impl TriangleShape<'_> {
         }
     }
 
+    /// Returns true if a triangle of a mesh has a double that is wound the other way.
+    pub(super) fn is_two_sided(&self, triangle: u32) -> bool {
+        let Self::Mesh(MeshShape { surface: Some(surface), .. }) = self else { return false };
+        surface.facets().is_two_sided(triangle)
+    }
+
     /// Returns true if the shape has an inside. Only contacts of surfaces ask for it.
     pub(super) fn is_solid(&self) -> bool {
         match self {
@@ -128,6 +134,12 @@ impl TriangleShape<'_> {
             Self::Mesh(mesh) => mesh.view.size_squared(),
             Self::Field(_) => Real::INFINITY,
         }
+    }
+
+    /// Returns the height of a mesh over the middle of its box along a unit direction; 0 for a height field.
+    pub(super) fn height(&self, direction: Vector) -> Real {
+        let Self::Mesh(mesh) = self else { return 0.0 };
+        mesh.view.height(direction, 0.0)
     }
 
     /// Returns the least coordinate along a direction, in the frame of the shape; `None` if not known.
