@@ -204,6 +204,36 @@ fn inside_out_meshes_push_each_other_apart() {
     assert!(count > 50, "{count}");
 }
 
+/// Would catch a side that the winding of a closed mesh decides, rather than where its body is. One of two contacts
+/// that are nearly as deep may be deeper, as the corners have another order.
+#[test]
+fn inside_out_meshes_have_the_contacts_of_their_bodies() {
+    let bodies = [mesh::ball(0.8, 6), mesh::cuboid(Vec3::splat(0.6), 2), mesh::monkey_head()];
+    let mut random = Rand32::new(8);
+    let deepest = |one: &TriMesh, two: &TriMesh, pose: Pose| {
+        let found = ask(&Question::new(one, two, pose));
+        let found = found.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        found.map(|manifold| (distance(manifold), manifold.local_n1))
+    };
+    let (mut same, mut count) = (0, 0);
+    for (one, two) in bodies.iter().flat_map(|one| bodies.iter().map(move |two| (one, two))) {
+        let turned = [one, two].map(|mesh| shape(&turned_inside_out(mesh.clone())));
+        let [one, two] = [one, two].map(shape);
+        for depth in [-0.01, 0.003, 0.03, 0.1].repeat(10) {
+            let pose = touching(&mut random, [&one, &two], depth);
+            let sound = deepest(&one, &two, pose).expect("the meshes meet");
+            for [one, two] in [[&turned[0], &two], [&one, &turned[1]], [&turned[0], &turned[1]]] {
+                let found = deepest(one, two, pose).expect("the meshes meet");
+                let (off, along) = ((found.0 - sound.0).abs(), found.1.dot(sound.1));
+                assert!(off < 1e-3 && along > 0.95, "{depth}: {found:?} {sound:?}");
+                same += usize::from(off < 1e-5 && along > 0.9999);
+                count += 1;
+            }
+        }
+    }
+    assert!(count == 1080 && same > 1070, "{same} of {count}");
+}
+
 /// Solids and sheets, of few and of many triangles.
 fn meshes() -> Vec<Mesh> {
     vec![

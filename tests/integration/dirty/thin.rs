@@ -9,9 +9,10 @@ use super::table::{Case, judge};
 use super::{FLAGS, row};
 use crate::worlds::on_ground;
 
-fn grounds() -> [(&'static str, Mesh); 2] {
+fn grounds() -> [(&'static str, Mesh); 3] {
     let block = mesh::cuboid(Vec3::new(10.0, 0.5, 10.0), 10).mapped(|at| at - 0.5 * Vec3::Y);
-    [("block", block), ("sheet", mesh::floor(20.0, 10))]
+    let inside_out = mesh::turned_inside_out(block.clone());
+    [("block", block), ("block inside out", inside_out), ("sheet", mesh::floor(20.0, 10))]
 }
 
 /// Thin bodies and half their sides.

@@ -186,12 +186,9 @@ impl<'a> LazySurface<'a> {
         let side = match kind {
             _ if facets.is_double(triangle) => Side::Inner,
             SurfaceKind::Sheet => Side::Sheet,
-            SurfaceKind::Solid if is_declared => match facets.side(triangle) {
-                Side::Inner => Side::Inner,
-                _ => Side::Outer,
-            },
-            _ if is_declared => Side::Sheet,
-            _ => facets.side(triangle),
+            _ if !is_declared || facets.side(triangle) == Side::Inner => facets.side(triangle),
+            SurfaceKind::Solid => Side::Outer,
+            SurfaceKind::InsideOut => Side::Turned,
         };
         Around { facets, side }
     }

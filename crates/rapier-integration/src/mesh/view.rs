@@ -115,27 +115,29 @@ const CROWD: usize = 64;
 const MOST_PARTS: usize = 8;
 
 /// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
-/// `None` if the ray meets nothing, or first meets the front of a solid's triangle. Parts of a solid may overlap.
-pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, is_sheet: bool) -> Option<(Real, Vec3)> {
+/// `outward` is the sign with which normals lead out of a solid, whose parts may overlap; `None` for a sheet. Returns `None` if
+/// the ray meets nothing, or first meets the outer side of a solid's triangle.
+pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, outward: Option<f64>) -> Option<(Real, Vec3)> {
+    let leaves = |feature| outward.is_none_or(|sign| (feature == BACK) == (sign > 0.0));
     let next = |from: Real| {
         let rest = Ray::new(ray.origin + from * ray.dir, ray.dir);
         let hit = shape.cast_local_ray_and_get_normal(&rest, Real::MAX, false)?;
         // Parry turns normals against the ray.
-        (is_sheet || hit.feature == BACK).then_some((from + hit.time_of_impact, -hit.normal))
+        leaves(hit.feature).then_some((from + hit.time_of_impact, -hit.normal))
     };
     let size = ray.origin.abs().max_element();
     let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + size);
     let first = next(0.0)?;
-    if is_sheet {
+    if outward.is_none() {
         return Some(first);
     }
     let exits = std::iter::successors(Some(first), |(length, _)| next(beyond(*length)));
     exits.take(MOST_PARTS).last()
 }
 
-/// Returns true if a solid ends within a length along a ray, which starts in one part of the solid. Returns false where a
-/// crowd of triangles is near the ray.
-pub(crate) fn ends_within(mesh: &TriMesh, ray: &Ray, length: Real) -> bool {
+/// Returns true if a solid ends within a length along a ray, which starts in one part of the solid. `outward` is the sign with
+/// which normals lead out. Returns false where a crowd of triangles is near the ray.
+pub(crate) fn ends_within(mesh: &TriMesh, ray: &Ray, length: Real, outward: f64) -> bool {
     let segment = BvhNode::leaf(Aabb::from_points([ray.origin, ray.point_at(length)]), 0);
     let near = mesh.bvh().leaves(|node| node.intersects(&segment)).take(CROWD);
     let near: ArrayVec<u32, CROWD> = near.collect();
@@ -144,7 +146,8 @@ pub(crate) fn ends_within(mesh: &TriMesh, ray: &Ray, length: Real) -> bool {
     }
     let hits = near.into_iter().filter_map(|triangle| {
         let hit = mesh.triangle(triangle).cast_local_ray_and_get_normal(ray, length, false)?;
-        Some((hit.time_of_impact, if hit.feature == BACK { -1 } else { 1 }))
+        let leaves = (hit.feature == BACK) == (outward > 0.0);
+        Some((hit.time_of_impact, if leaves { -1 } else { 1 }))
     });
     let mut hits: ArrayVec<(Real, i32), CROWD> = hits.collect();
     hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));

@@ -109,7 +109,7 @@ impl<'a> HeldMesh<'a> {
         let depth = exit.distance(middle);
         let slack = match room {
             Room::FacingOut => self.slack_in_room(middle, exit),
-            _ => (!self.is_slab(middle, exit, true)).then_some(depth - self.least_height()),
+            _ => (!self.is_slab(middle, exit, -1.0)).then_some(depth - self.least_height()),
         };
         if let Some(slack) = slack.filter(|slack| *slack > 0.0) {
             *test = InsideTest::Room(room, *placement, SURE * f64::from(slack));
@@ -128,7 +128,7 @@ impl<'a> HeldMesh<'a> {
         let unit = filter_unit(self.pose, filter_distance(true, ball.radius));
         let is_in_room = depth >= (1.0 - STICKS_OUT) * height
             && f64::from(depth + height) >= SUNK * unit
-            && !self.is_slab(middle, exit, false)
+            && !self.is_slab(middle, exit, 1.0)
             && !self.surface.is_declared_solid();
         // No test above depends on more than this depth.
         let enough = ((1.0 - STICKS_OUT) * ball.radius).max(self.least_height());
@@ -151,10 +151,11 @@ impl<'a> HeldMesh<'a> {
     }
 
     /// Returns true if the larger mesh is too flat for a room where `point` is in it. `exit` is the nearest point of the surface.
-    fn is_slab(&self, point: Vector, exit: Vector, faces_in: bool) -> bool {
+    /// `outward` is the sign with which normals lead out of the mesh.
+    fn is_slab(&self, point: Vector, exit: Vector, outward: f64) -> bool {
         let most = self.least_height() - exit.distance(point);
         let ray = Ray::new(point, (point - exit).normalize_or_zero());
-        self::exit(self.holder.mesh, &ray, faces_in).is_some_and(|(length, _)| length < most)
+        self::exit(self.holder.mesh, &ray, Some(outward)).is_some_and(|(length, _)| length < most)
     }
 
     /// Returns the nearest point of the larger mesh, and the room that it may be, if a point of the smaller one is inside. `point`
@@ -199,7 +200,7 @@ impl<'a> HeldMesh<'a> {
                 return None;
             }
             self.exit(vertex, test)?;
-            if surface.kind() != SurfaceKind::Solid {
+            if surface.kind() == SurfaceKind::Sheet {
                 *test = InsideTest::NoSolid;
                 return None;
             }

@@ -116,7 +116,7 @@ pub(super) struct Unsupported {
     pub(super) has_contact: bool,
     /// Signs with which the normals of the triangles lead out of the shapes.
     pub(super) outward: [f64; 2],
-    /// True for each triangle of a sheet, or with the body in front.
+    /// See [`Crossing::is_sheet`].
     pub(super) is_sheet: [bool; 2],
 }
 
@@ -138,6 +138,8 @@ pub(super) struct Crossing {
     pub(super) depth: f64,
     /// Signs with which the normals of the triangles lead out of the shapes; `None` for a sheet.
     pub(super) outward: [Option<f64>; 2],
+    /// True for each triangle of a sheet, and for one that is wound unlike most of the shape.
+    pub(super) is_sheet: [bool; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
 }
@@ -357,7 +359,7 @@ impl OverlapIslands {
                     pair,
                     has_contact: self.is_fine(&crossing),
                     outward,
-                    is_sheet: crossing.outward.map(|sign| sign != Some(1.0)),
+                    is_sheet: crossing.is_sheet,
                 });
             }
         }

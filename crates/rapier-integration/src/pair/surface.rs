@@ -219,7 +219,7 @@ impl<'a> SurfaceFilter<'a> {
         let shallow = self.shapes.filter_unit();
         let greatest = SHALLOW * contact.distance.abs().max(shallow);
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let extremal = self.outward(is_solid).extremal(ends, greatest, clipped);
+        let extremal = self.outward().extremal(ends, greatest, clipped);
         let good = extremal.contact();
         if good.is_none() && !is_crossing && self.is_touching(contact, TOUCHING) {
             return Verdict::None;
@@ -231,6 +231,7 @@ impl<'a> SurfaceFilter<'a> {
         if !is_crossing && sheet.is_some_and(|sheet| sheet.is_pushed_through(normal)) {
             return Verdict::None;
         }
+        let outward = self.outward_signs();
         let crossing = Crossing {
             pair: self.pair,
             is_crossing,
@@ -239,7 +240,8 @@ impl<'a> SurfaceFilter<'a> {
             has_extremal: extremal != Extremal::None,
             normal,
             depth,
-            outward: self.surfaces.each_ref().map(|surface| outward(surface.as_ref()?.side)),
+            outward,
+            is_sheet: [0, 1].map(|i| outward[i] != Some(self.shapes[i].outward())),
             sheet,
         };
         let source = ContactSource::OutwardAxis;
@@ -257,8 +259,7 @@ impl<'a> SurfaceFilter<'a> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
         let (has_extremal, cone) = (crossing.has_extremal, support.cone());
         let agrees = |normal: DVec3| support.agrees(normal);
-        let outward = self.outward(self.are_solid());
-        let contact = outward.least(has_extremal, ends, cone, agrees, clipped)?;
+        let contact = self.outward().least(has_extremal, ends, cone, agrees, clipped)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {
@@ -280,13 +281,18 @@ impl<'a> SurfaceFilter<'a> {
     }
 
     /// Returns the axes that lead out of the shapes.
-    fn outward(&self, is_solid: [bool; 2]) -> Outward<'_> {
+    fn outward(&self) -> Outward<'_> {
         let cones = [0, 1].map(|i| self.least_square(i));
-        Outward::new(self.local.corners.each_ref(), is_solid, cones)
+        Outward::new(self.local.corners.each_ref(), self.outward_signs(), cones)
+    }
+
+    /// Returns the signs with which the normals of the triangles lead out of solids; `None` for sheets.
+    fn outward_signs(&self) -> [Option<f64>; 2] {
+        [0, 1].map(|i| self.surfaces[i].as_ref()?.side.outward())
     }
 
     fn are_solid(&self) -> [bool; 2] {
-        [0, 1].map(|i| self.surfaces[i].as_ref().is_some_and(Around::is_solid))
+        self.outward_signs().map(|sign| sign.is_some())
     }
 
     /// Returns true if the triangles are within a distance, in their sizes.
@@ -464,15 +470,6 @@ impl<'a> SurfaceFilter<'a> {
 /// Returns the feature of a contact on shape 1 (0) or 2 (1).
 fn feature(TriangleContact { features, .. }: &TriangleContact, i: usize) -> Feature {
     [features.feature1(), features.feature2()][i]
-}
-
-/// Returns the sign with which the normal of a triangle leads out of the body; `None` for a sheet.
-fn outward(side: Side) -> Option<f64> {
-    match side {
-        Side::Outer => Some(1.0),
-        Side::Turned => Some(-1.0),
-        Side::Inner | Side::Sheet => None,
-    }
 }
 
 /// Returns true if a unit direction is far from the normals of a triangle.

@@ -94,6 +94,18 @@ impl TriangleShape<'_> {
         }
     }
 
+    /// Returns the sign with which most normals of the shape lead out of it.
+    pub(super) fn outward(&self) -> f64 {
+        match self {
+            Self::Mesh(MeshShape { surface: Some(surface), room: Room::No, .. })
+                if surface.kind() == SurfaceKind::InsideOut =>
+            {
+                -1.0
+            }
+            _ => 1.0,
+        }
+    }
+
     /// Returns true if a triangle of a mesh has a double that is wound the other way.
     pub(super) fn is_two_sided(&self, triangle: u32) -> bool {
         let Self::Mesh(MeshShape { surface: Some(surface), .. }) = self else { return false };
@@ -104,7 +116,7 @@ impl TriangleShape<'_> {
     pub(super) fn is_solid(&self) -> bool {
         match self {
             Self::Mesh(MeshShape { surface, room, .. }) => {
-                let is_solid = |surface: &LazySurface<'_>| surface.kind() == SurfaceKind::Solid;
+                let is_solid = |surface: &LazySurface<'_>| surface.kind() != SurfaceKind::Sheet;
                 *room == Room::No && surface.as_ref().is_some_and(is_solid)
             }
             Self::Field(FieldShape { side, .. }) => *side == Some(Side::Outer),
@@ -173,9 +185,10 @@ impl TriangleShape<'_> {
     /// Returns the distance in which a ray from a point inside leaves the shape, and the outward normal there. `None`
     /// if the ray meets nothing, or first meets the front of a solid's triangle.
     pub(super) fn exit(&self, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
+        let outward = (!is_sheet).then(|| self.outward());
         match self {
-            Self::Mesh(mesh) => exit(mesh.view.mesh, ray, is_sheet),
-            Self::Field(FieldShape { field, .. }) => exit(field.0, ray, is_sheet),
+            Self::Mesh(mesh) => exit(mesh.view.mesh, ray, outward),
+            Self::Field(FieldShape { field, .. }) => exit(field.0, ray, outward),
         }
     }
 
@@ -183,7 +196,7 @@ impl TriangleShape<'_> {
     /// has no end.
     pub(super) fn ends_within(&self, ray: &Ray, length: Real) -> bool {
         let Self::Mesh(mesh) = self else { return false };
-        ends_within(mesh.view.mesh, ray, length)
+        ends_within(mesh.view.mesh, ray, length, self.outward())
     }
 
     /// Returns the nearest triangle to a point, if that is within a distance. The triangle of a height field may be

@@ -33,8 +33,11 @@ const LEVEL: f64 = 1.0e-6;
 /// Two overlapping triangles, and the axes along which they leave each other and the solids.
 pub struct Outward<'t> {
     triangles: [Triangle<'t>; 2],
+    /// Unit normals that lead out of solids.
     normals: [DVec3; 2],
-    solid: [bool; 2],
+    /// Signs of these normals against the winding.
+    signs: [f64; 2],
+    is_solid: [bool; 2],
     cones: [f64; 2],
 }
 
@@ -80,12 +83,15 @@ impl DoubleCone {
 type OutwardAxis = (f64, DVec3);
 
 impl<'t> Outward<'t> {
-    /// `solid` is true for triangles of a solid, whose normals point outside. `cones` has squares of the least cosines
-    /// between the normals and extremal directions.
-    pub fn new(triangles: [&'t [DVec3; 3]; 2], solid: [bool; 2], cones: [f64; 2]) -> Self {
+    /// `outward` has the signs with which the normals lead out of solids; `None` for triangles of sheets. `cones` has squares of
+    /// the least cosines between the normals and extremal directions.
+    pub fn new(triangles: [&'t [DVec3; 3]; 2], outward: [Option<f64>; 2], cones: [f64; 2]) -> Self {
         let triangles = triangles.map(Triangle::new);
-        let normals = [0, 1].map(|i| triangles[i].area_vector().normalize_or_zero());
-        Self { triangles, normals, solid, cones }
+        let normal = |i: usize| triangles[i].area_vector().normalize_or_zero();
+        let signs = outward.map(|sign| sign.unwrap_or(1.0));
+        let normals = [0, 1].map(|i| signs[i] * normal(i));
+        let is_solid = outward.map(|sign| sign.is_some());
+        Self { triangles, normals, signs, is_solid, cones }
     }
 
     /// Returns the contact along the extremal axis of least overlap, if that is at most `most`.
@@ -210,8 +216,9 @@ impl<'t> Outward<'t> {
         let mut consider = |direction: DVec3| {
             let heights = [direction.dot(normal1), -direction.dot(normal2)];
             let most = LEAN * LEAN * direction.length_squared();
-            let is_out =
-                |i: usize| !self.solid[i] || heights[i] >= 0.0 || heights[i] * heights[i] <= most;
+            let is_out = |i: usize| {
+                !self.is_solid[i] || heights[i] >= 0.0 || heights[i] * heights[i] <= most
+            };
             if is_out(0) && is_out(1) {
                 visit(direction, heights)
             } else {
@@ -227,20 +234,22 @@ impl<'t> Outward<'t> {
         }
         let may_count = |edge: DVec3| cones.iter().all(|cone| cone.may_be_perpendicular(edge));
         let [may_count1, may_count2] = [t1, t2].map(|t| t.edges.map(may_count));
-        let (slopes1, slopes2) = (slopes(t1, normal2), slopes(t2, normal1));
+        // Edges run around the normals, against the winding if these do.
+        let [sign1, sign2] = self.signs;
+        let (slopes1, slopes2) = (slopes(t1, sign1 * normal2), slopes(t2, sign2 * normal1));
         for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
             // Both edges have the sign of the axis if they are in front (see `axes.rs`).
-            let (sign1, sign2) = (slopes1[i], slopes2[j]);
-            if !(may_count1[i] && may_count2[j]) || sign1 * sign2 < 0.0 {
+            let (slope1, slope2) = (slopes1[i], slopes2[j]);
+            if !(may_count1[i] && may_count2[j]) || slope1 * slope2 < 0.0 {
                 continue;
             }
-            let (e1, e2) = (t1.edges[i], t2.edges[j]);
+            let (e1, e2) = (sign1 * t1.edges[i], sign2 * t2.edges[j]);
             let cross = e1.cross(e2);
             let least = NEAR_PARALLEL * NEAR_PARALLEL * e1.length_squared() * e2.length_squared();
             if cross.length_squared() <= least {
                 continue;
             }
-            let sign = sign1 + sign2;
+            let sign = slope1 + slope2;
             if sign >= 0.0 && consider(cross).is_break()
                 || sign <= 0.0 && consider(-cross).is_break()
             {

@@ -49,7 +49,7 @@ impl<F: Facets> Around<F> {
     ) -> bool {
         if feature == Feature::Face {
             let (height, is_upright) = self.over_face(triangle, direction);
-            let leads_in = self.is_solid() && height < 0.0;
+            let leads_in = self.outward() * height < 0.0;
             return is_upright && !leads_in;
         }
         let to_face = matches!(contact, Some((_, Feature::Face)));
@@ -69,7 +69,7 @@ impl<F: Facets> Around<F> {
         let place = contact.map(|(place, _)| place);
         let slopes = self.all_slopes(triangle, feature, direction, place);
         // The memory is for triangles of all sides.
-        (!self.is_solid() || slopes.height >= 0.0)
+        (!self.is_solid() || self.outward() * slopes.height >= 0.0)
             && (slopes.rise <= FLAT * FLAT
                 || !self.is_exceeded(triangle, feature, slopes, most, place))
     }
@@ -94,7 +94,7 @@ impl<F: Facets> Around<F> {
                 }
             }
             if self.is_solid() {
-                signs.add(u.cross(v).dot(direction));
+                signs.add(self.outward() * u.cross(v).dot(direction));
             }
             count += 1;
             let is_over = slopes.rise > most * most || count > LONG;
@@ -154,9 +154,14 @@ impl<F: Facets> Around<F> {
         (!has_strays, count)
     }
 
-    /// True if the body is behind the triangle, and nothing in front.
+    /// True if the body is on one side of the triangle, and nothing on the other.
     pub fn is_solid(&self) -> bool {
-        self.side == Side::Outer
+        self.side.outward().is_some()
+    }
+
+    /// Sign with which the normal of the triangle leads out of the solid; 0 for sheets.
+    fn outward(&self) -> f64 {
+        self.side.outward().unwrap_or(0.0)
     }
 
     /// True if a unit direction from a feature leads into the solid; false for sheets.
@@ -166,16 +171,17 @@ impl<F: Facets> Around<F> {
         }
         if feature == Feature::Face {
             let (height, is_upright) = self.over_face(triangle, direction);
-            return is_upright && height < 0.0;
+            return is_upright && self.outward() * height < 0.0;
         }
         let (mut count, mut signs) = (0, Signs::default());
         let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
-            signs.add(u.cross(v).dot(direction));
+            signs.add(self.outward() * u.cross(v).dot(direction));
             count += 1;
             if count > LONG { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         if count > LONG || !is_closed && !self.facets.is_whole(triangle, feature) {
-            return self.all_slopes(triangle, feature, direction, None).height < 0.0;
+            let slopes = self.all_slopes(triangle, feature, direction, None);
+            return self.outward() * slopes.height < 0.0;
         }
         self.leads_in(triangle, feature, direction, &signs)
     }
@@ -188,7 +194,7 @@ impl<F: Facets> Around<F> {
                 heights.add(wedge.area(), wedge.angle(feature), direction);
                 ControlFlow::Continue(())
             });
-            heights.sum() < 0.0
+            self.outward() * heights.sum() < 0.0
         })
     }
 

@@ -61,6 +61,17 @@ pub enum Side {
     Sheet,
 }
 
+impl Side {
+    /// Sign with which the normal of the triangle leads out of the body; `None` unless the body is on one side.
+    pub fn outward(self) -> Option<f64> {
+        match self {
+            Self::Outer => Some(1.0),
+            Self::Turned => Some(-1.0),
+            Self::Inner | Self::Sheet => None,
+        }
+    }
+}
+
 /// Distance from a triangle at which rays start, as a share of its longest side. Higher: thin plates
 /// are sheets. Lower: rounding decides about walls that touch.
 const OFFSET: f64 = 1.0e-4;

@@ -15,7 +15,7 @@ fn penetration(
     solid: [bool; 2],
     ends: impl Fn(usize, Feature, DVec3) -> bool,
 ) -> Option<(TriangleContact, bool)> {
-    let pair = Outward::new([t1, t2], solid, [0.0; 2]);
+    let pair = Outward::new([t1, t2], solid.map(|is_solid| is_solid.then_some(1.0)), [0.0; 2]);
     let least = |has_extremal: bool, cone: Option<DoubleCone>, least: f64| {
         let mut points = ManifoldPoints::new();
         let axis = cone.map_or(DVec3::ZERO, |cone| cone.axis);
