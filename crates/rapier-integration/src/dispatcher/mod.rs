@@ -178,7 +178,7 @@ impl PreparedTree {
     ///
     /// Holds for all meshes with this content while one of them is in use. One of more than 8192
     /// triangles must be registered.
-    /// [`InsideOut`](SurfaceKind::InsideOut) is a solid whose normals lead inwards, or a room for what is in it.
+    /// [`InsideOut`](SurfaceKind::InsideOut) is a solid with inward normals. Bodies in it are in a room.
     pub fn set_surface_kind(&self, kind: SurfaceKind) {
         self.0.data.declare_kind(kind);
     }

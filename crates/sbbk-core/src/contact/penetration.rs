@@ -35,7 +35,7 @@ pub struct Outward<'t> {
     triangles: [Triangle<'t>; 2],
     /// Unit normals that lead out of solids.
     normals: [DVec3; 2],
-    /// Signs of these normals against the winding.
+    /// -1 for each normal that the winding has the other way, else 1.
     signs: [f64; 2],
     is_solid: [bool; 2],
     cones: [f64; 2],
