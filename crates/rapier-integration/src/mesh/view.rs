@@ -299,8 +299,12 @@ impl<'a> MeshView<'a> {
         Sphere { centre, radius: half + gamma(8) * (centre.length() + half) }
     }
 
-    /// Returns the distance of a point, up to rounding.
-    pub(crate) fn distance(&self, point: Vec3) -> Option<Real> {
+    /// Returns the distance of a point, up to rounding; `None` if the box of a triangle is within `least`.
+    pub(crate) fn distance_beyond(&self, point: Vec3, least: Real) -> Option<Real> {
+        let is_within = |node: &BvhNode| node.aabb().distance_to_local_point(point, true) <= least;
+        if self.mesh.bvh().leaves(is_within).next().is_some() {
+            return None;
+        }
         let (_, nearest, _) = nearest(self.mesh, point, |_| false)?;
         Some(nearest.distance(point))
     }

@@ -63,9 +63,9 @@ pub(crate) trait PairQuery {
         false
     }
 
-    /// Returns a lower bound of the distance between the shapes, if one costs less than a descent. Asked for where the last
-    /// descent has found nothing.
-    fn clearance(&self) -> Option<Real> {
+    /// Returns a lower bound of the distance between the shapes, if one above `margin` costs less than a descent. Asked for
+    /// where the last descent has found nothing.
+    fn clearance(&self, _margin: Real) -> Option<Real> {
         None
     }
 

@@ -292,7 +292,7 @@ impl<'a> SurfaceFilter<'a> {
     }
 
     fn are_solid(&self) -> [bool; 2] {
-        self.outward_signs().map(|sign| sign.is_some())
+        [0, 1].map(|i| self.surfaces[i].as_ref().is_some_and(Around::is_solid))
     }
 
     /// Returns true if the triangles are within a distance, in their sizes.

@@ -111,8 +111,9 @@ impl TriangleShapes<'_> {
         Moving { ball: self[smaller].ball(), placement: [placement21, placement12][smaller] }
     }
 
-    /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one.
-    pub(super) fn clearance(&self) -> Option<Real> {
+    /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one, if that is more than
+    /// `margin`.
+    pub(super) fn clearance(&self, margin: Real) -> Option<Real> {
         let (TriangleShape::Mesh(larger), TriangleShape::Mesh(_)) =
             (&self[self.larger], &self[1 - self.larger])
         else {
@@ -122,7 +123,8 @@ impl TriangleShapes<'_> {
         let placed = self.pose.in_other(1 - self.larger, centre);
         let offset = self.pose.pos12.translation.abs().max_element();
         let size = larger.view.magnitude() + centre.abs().max_element() + radius + offset;
-        let clearance = larger.view.distance(placed)? - radius - gamma(64) * size;
+        let reach = radius + gamma(64) * size;
+        let clearance = larger.view.distance_beyond(placed, reach + margin)? - reach;
         clearance.is_finite().then_some(clearance)
     }
 

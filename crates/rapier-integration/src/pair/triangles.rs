@@ -124,8 +124,8 @@ impl PairQuery for TriangleQuery<'_> {
         self.shapes.reach()
     }
 
-    fn clearance(&self) -> Option<Real> {
-        self.shapes.clearance()
+    fn clearance(&self, margin: Real) -> Option<Real> {
+        self.shapes.clearance(margin)
     }
 
     fn descend(
