@@ -193,8 +193,8 @@ impl<'a> LazySurface<'a> {
         Around { facets, side }
     }
 
-    /// Returns the triangle nearest to a point, the nearest point, and the cosine between the direction to `point`
-    /// and the normal that leads into the body. Leaves out triangles that do not bound the body of a closed mesh.
+    /// Returns the triangle nearest to a point, and the nearest point. Also returns the cosine between the direction to
+    /// `point` and the normal that leads into the body. Leaves out triangles that do not bound the body of a closed mesh.
     pub(crate) fn nearest(&self, point: Vec3) -> Option<(u32, Vec3, Real)> {
         let kind = self.kind();
         let bounds_nothing = |triangle| match self.around(triangle).side {
