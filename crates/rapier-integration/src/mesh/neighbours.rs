@@ -78,16 +78,20 @@ impl MeshFacets<'_> {
 
     /// Returns true if a triangle has a double that is wound the other way.
     pub(crate) fn is_two_sided(self, triangle: u32) -> bool {
-        let may_have_double = match self.twins {
-            Twins::All(surface, _) => surface.has_doubles(),
-            Twins::Near(_) => true,
-        };
-        let corners = |triangle: u32| *self.mesh.triangle(triangle).vertices();
-        let [a, b, c] = corners(triangle);
+        if let Twins::All(surface, _) = self.twins
+            && !surface.has_doubles()
+        {
+            return false;
+        }
+        let rays = MeshRays(self.mesh);
+        let [a, b, c] = rays.corners(triangle);
         let backs = [[a, c, b], [c, b, a], [b, a, c]];
-        let bounds = self.mesh.triangle(triangle).local_aabb();
-        may_have_double
-            && self.mesh.bvh().intersect_aabb(&bounds).any(|other| backs.contains(&corners(other)))
+        let mut is_two_sided = false;
+        rays.near(triangle, 0.0, &mut |other| {
+            is_two_sided = backs.contains(&rays.corners(other));
+            if is_two_sided { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        is_two_sided
     }
 
     /// Returns the first triangle of a crowd or a small component. If that triangle is a face, so are all.

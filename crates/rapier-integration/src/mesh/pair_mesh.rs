@@ -9,7 +9,7 @@ use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
 use super::neighbours::{MeshFacets, Neighbours, Twins};
 use super::store::{is_analysed, is_small};
-use super::view::{MeshView, is_covered, nearest};
+use super::view::{MeshView, nearest};
 
 /// State of one mesh of a pair of colliders, kept from query to query.
 #[derive(Clone, Default)]
@@ -207,11 +207,11 @@ impl<'a> LazySurface<'a> {
         Some((triangle, nearest, if is_turned { -behind } else { behind }))
     }
 
-    /// Returns the sign of the winding number around a point: 1 within a body, -1 within faces that lead inwards, 0 elsewhere and
-    /// for a sheet. The nearest triangle cannot tell the sign, as it may be of a part that pierces the surface.
+    /// Returns the sign of the winding number around a [covered](super::is_covered) point: 1 within a body, -1 within faces that
+    /// lead inwards, 0 elsewhere and for a sheet. The nearest triangle cannot tell the sign, as it may be of a part that pierces
+    /// the surface.
     pub(crate) fn winding_sign(&self, point: Vec3) -> i32 {
-        let may_be_within = self.kind() != SurfaceKind::Sheet && is_covered(self.view.mesh, point);
-        if may_be_within { self.facets().winding_sign(point) } else { 0 }
+        if self.kind() == SurfaceKind::Sheet { 0 } else { self.facets().winding_sign(point) }
     }
 
     /// Returns true if a user declared that the mesh is a solid.

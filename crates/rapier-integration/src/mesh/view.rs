@@ -107,6 +107,11 @@ pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Opt
 /// Parry's feature of a ray that meets the back of a triangle.
 const BACK: FeatureId = FeatureId::Face(1);
 
+/// Returns true if a ray that meets a feature leaves the solid there. `outward` is the sign with which normals lead out.
+fn leaves(met: FeatureId, outward: f64) -> bool {
+    (met == BACK) == (outward > 0.0)
+}
+
 /// Number of triangles near a ray from which [`ends_within`] returns false without a test. Higher: slow
 /// where many triangles are at one place. Lower: thin walls of fine meshes are pushed together.
 const CROWD: usize = 64;
@@ -118,12 +123,12 @@ const MOST_PARTS: usize = 8;
 /// `outward` is the sign with which normals lead out of a solid, whose parts may overlap; `None` for a sheet. Returns `None` if
 /// the ray meets nothing, or first meets the outer side of a solid's triangle.
 pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, outward: Option<f64>) -> Option<(Real, Vec3)> {
-    let leaves = |feature| outward.is_none_or(|sign| (feature == BACK) == (sign > 0.0));
     let next = |from: Real| {
         let rest = Ray::new(ray.origin + from * ray.dir, ray.dir);
         let hit = shape.cast_local_ray_and_get_normal(&rest, Real::MAX, false)?;
         // Parry turns normals against the ray.
-        leaves(hit.feature).then_some((from + hit.time_of_impact, -hit.normal))
+        let leaves = outward.is_none_or(|outward| leaves(hit.feature, outward));
+        leaves.then_some((from + hit.time_of_impact, -hit.normal))
     };
     let size = ray.origin.abs().max_element();
     let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + size);
@@ -146,8 +151,7 @@ pub(crate) fn ends_within(mesh: &TriMesh, ray: &Ray, length: Real, outward: f64)
     }
     let hits = near.into_iter().filter_map(|triangle| {
         let hit = mesh.triangle(triangle).cast_local_ray_and_get_normal(ray, length, false)?;
-        let leaves = (hit.feature == BACK) == (outward > 0.0);
-        Some((hit.time_of_impact, if leaves { -1 } else { 1 }))
+        Some((hit.time_of_impact, if leaves(hit.feature, outward) { -1 } else { 1 }))
     });
     let mut hits: ArrayVec<(Real, i32), CROWD> = hits.collect();
     hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));

@@ -36,28 +36,26 @@ pub(crate) enum InsideTest {
     Unknown,
     /// The larger mesh is no solid.
     NoSolid,
-    /// A point of the smaller mesh was at least this far outside at this placement of the smaller mesh.
-    Outside(Placement, f64),
-    /// The larger mesh was a room at this placement of the smaller mesh, and stays that room for this motion.
-    Room(Room, Placement, f64),
+    /// The larger mesh was such a room at this placement of the smaller mesh, and stays one for this motion. It was
+    /// [none](Room::No) if a point of the smaller mesh was as far outside.
+    Known(Room, Placement, f64),
 }
 
 impl InsideTest {
-    /// A point is `distance` outside at a placement of the smaller mesh.
-    fn outside(placement: &Placement, distance: f32) -> Self {
-        Self::Outside(*placement, SURE * f64::from(distance))
+    /// The larger mesh stays such a room for a motion of `slack`.
+    fn new(room: Room, placement: &Placement, slack: f32) -> Self {
+        Self::Known(room, *placement, SURE * f64::from(slack))
     }
 
     /// Returns the room that holds a mesh. `None` if the last result does not hold for a mesh with points in `ball`.
     fn known(&self, ball: Sphere, placement: &Placement) -> Option<Room> {
-        let holds = |before: &Placement, slack: &f64| {
-            placement.motion_bound(before, ball.centre, ball.radius) < *slack
-        };
         match self {
             Self::Unknown => None,
             Self::NoSolid => Some(Room::No),
-            Self::Outside(before, distance) => holds(before, distance).then_some(Room::No),
-            Self::Room(room, before, slack) => holds(before, slack).then_some(*room),
+            Self::Known(room, before, slack) => {
+                let motion = placement.motion_bound(before, ball.centre, ball.radius);
+                (motion < *slack).then_some(*room)
+            }
         }
     }
 }
@@ -106,13 +104,13 @@ impl<'a> HeldMesh<'a> {
         }
         let middle = self.in_holder(ball.centre);
         let Some((exit, room)) = self.exit(middle, test) else { return Room::No };
-        let depth = exit.distance(middle);
         let slack = match room {
             Room::FacingOut => self.slack_in_room(middle, exit),
-            _ => (!self.is_slab(middle, exit, -1.0)).then_some(depth - self.least_height()),
+            _ if self.is_slab(middle, exit, -1.0) => None,
+            _ => Some(exit.distance(middle) - self.least_height()),
         };
         if let Some(slack) = slack.filter(|slack| *slack > 0.0) {
-            *test = InsideTest::Room(room, *placement, SURE * f64::from(slack));
+            *test = InsideTest::new(room, placement, slack);
         }
         if slack.is_some() { room } else { Room::No }
     }
@@ -165,14 +163,15 @@ impl<'a> HeldMesh<'a> {
         let placement = self.placement();
         let from_box = holder.root().distance_to_local_point(point, true);
         if from_box > 0.0 {
-            *test = InsideTest::outside(placement, from_box);
+            *test = InsideTest::new(Room::No, placement, from_box);
             return None;
         }
         let is_covered = is_covered(holder.mesh, point);
         let (_, near, behind) = surface.nearest(point)?;
         let kind = surface.kind();
         let is_behind = behind >= BEHIND && (is_covered || kind != SurfaceKind::Sheet);
-        let room = match surface.winding_sign(point) {
+        let sign = if is_covered { surface.winding_sign(point) } else { 0 };
+        let room = match sign {
             1.. => Room::FacingOut,
             ..0 => Room::FacingIn,
             // A ray may leave through a hole, or through the open end of a tube.
@@ -181,7 +180,7 @@ impl<'a> HeldMesh<'a> {
             0 => Room::FacingOut,
         };
         if room == Room::No && (behind < -BEHIND || !is_covered) {
-            *test = InsideTest::outside(placement, near.distance(point));
+            *test = InsideTest::new(Room::No, placement, near.distance(point));
         }
         (room != Room::No).then_some((near, room))
     }
@@ -193,10 +192,8 @@ impl<'a> HeldMesh<'a> {
         let Self { pose, held, holder, surface, outer, room } = *self;
         let vertex = self.in_holder(held.corners(0)[0]);
         if !is_in_both {
-            if room != Room::No {
-                return None;
-            }
-            if test.known(held.ball(), self.placement()) == Some(Room::No) {
+            let known = test.known(held.ball(), self.placement());
+            if room != Room::No || known == Some(Room::No) {
                 return None;
             }
             self.exit(vertex, test)?;

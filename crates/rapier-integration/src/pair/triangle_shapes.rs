@@ -125,7 +125,7 @@ impl TriangleShapes<'_> {
         let size = larger.view.magnitude() + centre.abs().max_element() + radius + offset;
         let reach = radius + gamma(64) * size;
         let clearance = larger.view.distance_beyond(placed, reach + margin)? - reach;
-        clearance.is_finite().then_some(clearance)
+        (clearance > margin && clearance.is_finite()).then_some(clearance)
     }
 
     /// Returns the unit of the filter: the prediction distance, or less for small shapes.

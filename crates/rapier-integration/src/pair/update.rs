@@ -92,8 +92,7 @@ fn update_contacts<Q: PairQuery>(
     let (outcome, margin) = match plan {
         SlackPlan::Reuse { margin, .. } => (QueryOutcome::Reused, margin),
         SlackPlan::Descend { margin, .. } => {
-            let clearance = had_none.then(|| query.clearance(margin)).flatten();
-            if let Some(clearance) = clearance.filter(|clearance| *clearance > margin) {
+            if let Some(clearance) = had_none.then(|| query.clearance(margin)).flatten() {
                 memory.slack.note_clear(clearance);
                 (QueryOutcome::Apart, clearance)
             } else {

@@ -156,7 +156,7 @@ impl<F: Facets> Around<F> {
 
     /// True if the body is on one side of the triangle, and nothing on the other.
     pub fn is_solid(&self) -> bool {
-        matches!(self.side, Side::Outer | Side::Turned)
+        self.side.outward().is_some()
     }
 
     /// Sign with which the normal of the triangle leads out of the solid; 0 for sheets.

@@ -63,6 +63,7 @@ pub enum Side {
 
 impl Side {
     /// Sign with which the normal of the triangle leads out of the body; `None` unless the body is on one side.
+    #[inline]
     pub fn outward(self) -> Option<f64> {
         match self {
             Self::Outer => Some(1.0),

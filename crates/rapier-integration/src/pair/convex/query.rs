@@ -17,7 +17,7 @@ use super::pair::ConvexPair;
 use super::parts::{Part, PartData, Parts, PlacedPart};
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::mesh::{Change, LazySurface, PairMesh};
+use crate::mesh::{Change, LazySurface, PairMesh, is_covered};
 use crate::pair::pose::PairPose;
 use crate::pair::query::{
     ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory,
@@ -293,7 +293,7 @@ impl ConvexQuery<'_> {
     ) -> bool {
         let is_within = self.pair.parts.with(part, |shape| {
             let middle = self.placed(part, &shape, scratch).in_mesh(shape.shape.middle()?);
-            Some(surface.winding_sign(middle) > 0)
+            Some(is_covered(self.pair.mesh.mesh, middle) && surface.winding_sign(middle) > 0)
         });
         is_within.flatten() == Some(true)
     }
