@@ -6,7 +6,8 @@ use parry3d::shape::TriMesh;
 use sbbk_core::surface::{Surface, SurfaceKind, kind};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
-use super::neighbours::{MeshRays, TriangleFlags};
+use super::flags::TriangleFlags;
+use super::neighbours::MeshRays;
 
 /// Tree and surface of a mesh, for all colliders with equal geometry. A thread computes a part when the
 /// thread needs that part. Two threads may compute one tree or surface at once, and neither waits. Kind,
