@@ -1,4 +1,4 @@
-use std::f32::consts::PI;
+use std::f32::consts::{PI, TAU};
 
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
@@ -6,7 +6,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{Cuboid, SharedShape};
-use sbbk_testkit::mesh::{self, Mesh};
+use sbbk_testkit::mesh::{self, Mesh, Thread};
 
 use crate::support::{Question, SETS, distance, having, per_triangle, shape, touching};
 use crate::truth::Tally;
@@ -142,6 +142,33 @@ fn the_nearest_edges_of_crossed_bars_have_a_contact() {
         let nearest = found.iter().map(distance).fold(Real::INFINITY, Real::min);
         assert!((nearest - truth).abs() < 1e-5, "{i}: {nearest}, {truth}");
     }
+}
+
+/// A nut in the middle of the play on its bolt, and a prediction distance of up to two thirds of the pitch. Would catch triangles that
+/// seem to have passed each other, as normals of far contacts lead into both threads. They pushed nuts by a flank.
+#[test]
+fn solids_that_are_apart_have_no_nearer_contacts() {
+    let thread = Thread::BOLT;
+    let nut = Thread { root: 0.92, thicker: 0.05, turns: 2, ..thread };
+    let [bolt, nut] = [thread.bolt(), nut.nut(1.2)].map(|mesh| shape(&mesh));
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(11);
+    let mut found = 0;
+    for i in 0..60 {
+        let mut within = |most: Real| most * (2.0 * random.rand_float() - 1.0);
+        let turn = within(3.0);
+        let height = thread.pitch * (2.0 + turn / TAU + within(0.03));
+        let turn = Quat::from_rotation_y(turn) * Quat::from_rotation_x(within(0.003));
+        let pose = Pose::from_parts(Vec3::new(within(0.005), height, within(0.005)), turn);
+        let least = DefaultQueryDispatcher.distance(&pose, &bolt, &nut).unwrap().distance;
+        assert!(least > 1e-3, "{least}");
+        let question = Question::new(&bolt, &nut, pose).within([0.02, 0.1, 0.3][i % 3]);
+        let contacts = question.fresh(&dispatcher);
+        let nearest = contacts.iter().map(distance).fold(Real::INFINITY, Real::min);
+        assert!(nearest > least - 1e-4, "{i}: {nearest}, {least}");
+        found += contacts.len();
+    }
+    assert!(found > 1000, "{found}");
 }
 
 /// A roof of two slopes, with triangles that get smaller towards the middle of its ridge along the x axis.

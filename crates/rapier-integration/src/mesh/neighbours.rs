@@ -60,8 +60,8 @@ impl MeshFacets<'_> {
         })
     }
 
-    /// Returns the sign of the winding number of a closed mesh around a point, by two rays.
-    pub(super) fn winding_sign(self, point: Vector) -> i32 {
+    /// Returns the sign of the winding number of a closed mesh around a point, if two rays agree.
+    pub(super) fn winding_sign(self, point: Vector) -> Option<i32> {
         let (rays, point) = (MeshRays(self.mesh), point.as_dvec3());
         match self.twins {
             Twins::All(surface, _) => surface.winding_sign(&rays, point, self.memo),

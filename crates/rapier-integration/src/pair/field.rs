@@ -2,7 +2,7 @@ use std::hash::BuildHasher;
 use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::PointQuery;
 use parry3d::shape::{HeightField, HeightFieldCellStatus, Triangle};
@@ -60,35 +60,32 @@ impl Field<'_> {
     /// Returns the nearest point of the surface, and the cosine between the direction to the point
     /// and the downward normal.
     pub(super) fn nearest(self, point: Vector) -> Option<(Vector, Real)> {
-        let nearest = self.0.project_local_point(point, false).point;
-        let away = (point - nearest).normalize_or_zero();
-        let touched = Aabb::new(nearest, nearest).loosened(NEARLY * nearest.abs().max_element());
-        let (mut least, mut behind) = (Real::INFINITY, None);
-        self.0.map_elements_in_local_aabb(&touched, &mut |_, triangle| {
-            let distance = triangle.distance_to_local_point(point, false);
-            if distance < least {
-                least = distance;
-                behind = triangle.normal().map(|normal| -away.dot(normal));
-            }
-        });
-        Some((nearest, behind?))
+        let (triangle, nearest) = self.walk(point)?;
+        let normal = self.triangle(self.id(triangle))?.normal()?;
+        Some((nearest, -(point - nearest).normalize_or_zero().dot(normal)))
     }
 
-    /// Returns a triangle within a distance of a point. Walks from the cell under the point to nearer triangles of
-    /// the cells around, so the triangle is the nearest one there. Another hill may be nearer.
+    /// Returns a triangle within a distance of a point.
     pub(super) fn nearest_triangle(self, point: Vector, within: Real) -> Option<u32> {
+        let (triangle, nearest) = self.walk(point)?;
+        (nearest.distance(point) <= within).then(|| self.id(triangle))
+    }
+
+    /// Returns the nearest triangle to a point, and its nearest point. Walks from the cell under the point to nearer triangles
+    /// of the cells around, so the triangle is the nearest one there. Another hill may be nearer.
+    fn walk(self, point: Vector) -> Option<(FieldTriangle, Vector)> {
         let (mut least, mut nearest, mut at) = (Real::INFINITY, None, point);
         for _ in 0..STEPS {
             let around = self.nearest_around(at, point);
             let nearer = around.filter(|(_, foot)| foot.distance(point) < least);
-            let Some((triangle, foot)) = nearer else { break };
-            (least, nearest, at) = (foot.distance(point), Some(self.id(triangle)), foot);
+            let Some((_, foot)) = nearer else { break };
+            (least, nearest, at) = (foot.distance(point), nearer, foot);
         }
-        nearest.filter(|_| least <= within)
+        nearest
     }
 
     /// Returns the triangle that is nearest to a point, and its nearest point. Only the cell under `at` and the
-    /// cells around it count.
+    /// cells around it count. The triangle that faces the point most wins a tie, as it tells the side of the point.
     fn nearest_around(self, at: Vector, point: Vector) -> Option<(FieldTriangle, Vector)> {
         let (row, column) = self.0.closest_cell_at_point(at);
         let [columns, rows] = self.cell_counts();
@@ -100,11 +97,14 @@ impl Field<'_> {
             (0..2).zip(self.triangles(cell)).filter_map(of_side)
         });
         let feet = triangles.map(|(triangle, corners)| {
-            (triangle, Triangle::from(corners).project_local_point(point, false).point)
+            let corners = Triangle::from(corners);
+            let foot = corners.project_local_point(point, false).point;
+            let way = point - foot;
+            let faces = corners.normal().map_or(0.0, |normal| normal.dot(way).abs());
+            (way.length() - NEARLY * faces, (triangle, foot))
         });
-        let distance = |(_, foot): &(_, Vector)| foot.distance_squared(point);
-        let feet = feet.filter(|(_, foot)| foot.is_finite());
-        feet.min_by(|one, two| distance(one).total_cmp(&distance(two)))
+        let feet = feet.filter(|(_, (_, foot))| foot.is_finite());
+        Some(feet.min_by(|(one, _), (two, _)| one.total_cmp(two))?.1)
     }
 
     /// Returns about the number of triangles under a box.
@@ -208,7 +208,7 @@ impl HeightGrid for Field<'_> {
 /// triangles that are farther.
 const STEPS: usize = 32;
 
-/// Rounding of the projection of a point onto a triangle, as a share of the coordinates.
+/// Share of a distance below which two are equal.
 const NEARLY: Real = 1.0e-6;
 
 /// Hash that tells fields apart in constant time: addresses, sizes, scale, flags, and some heights.

@@ -170,7 +170,7 @@ impl<'a> HeldMesh<'a> {
         let (_, near, behind) = surface.nearest(point)?;
         let kind = surface.kind();
         let is_behind = behind >= BEHIND && (is_covered || kind != SurfaceKind::Sheet);
-        let sign = if is_covered { surface.winding_sign(point) } else { 0 };
+        let sign = is_covered.then(|| surface.winding_sign(point)).flatten().unwrap_or(0);
         let room = match sign {
             1.. => Room::FacingOut,
             ..0 => Room::FacingIn,

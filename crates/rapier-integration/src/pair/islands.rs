@@ -144,19 +144,19 @@ pub(super) struct Crossing {
     pub(super) sheet: Option<SheetSide>,
 }
 
-/// Position of a solid relative to a triangle of a sheet.
+/// Position of a body relative to a triangle of a sheet.
 #[derive(Copy, Clone)]
 pub(super) struct SheetSide {
     /// The shape that counts as the sheet: of two sheets the larger one, `None` if both are equally large.
     pub(super) shape: Option<usize>,
-    /// Normal of contacts that push the solid off the front of the triangle.
+    /// Normal of contacts that push the body off the front of the triangle.
     pub(super) away: DVec3,
-    /// Height of the middle of the solid over the front.
+    /// Height of the middle of the body over the front.
     pub(super) height: f64,
 }
 
 impl SheetSide {
-    /// Returns true if a contact pushes the middle of the solid through the sheet.
+    /// Returns true if a contact pushes the middle of the body through the sheet.
     pub(super) fn is_pushed_through(&self, normal: DVec3) -> bool {
         self.away.dot(normal) * self.height.signum() < -SAME_SIDE
     }

@@ -138,6 +138,7 @@ impl<'a> Pair for MeshPair<'a> {
             trees: tree1.zip(tree2).map(<[_; 2]>::from),
             filter_distance: filter_distance(self.has_surfaces(), radius),
             reach: OnceLock::new(),
+            over_sheets: Default::default(),
         };
         let room = HeldMesh::of(&shapes).map_or(Room::No, |mesh| mesh.room(in_room));
         if let TriangleShape::Mesh(mesh) = &mut shapes.shapes[shapes.larger] {

@@ -16,6 +16,7 @@ mod passed;
 mod pose;
 mod query;
 mod reduce;
+mod sheets;
 mod state;
 mod surface;
 mod triangle_contacts;

@@ -39,6 +39,10 @@ pub(super) const FILTERED: Real = 0.1;
 /// through what they hit.
 const EQUAL_DEPTH: Real = 0.02;
 
+/// Share of the depth of the deepest point that counts like [`PatchPlan::equal_depth`] where points are chosen. Higher: points
+/// that hover replace points that carry. Lower: thin discs stand on one arc of the rim, and turn through floors.
+const SUNK: Real = 0.5;
+
 /// [`PatchPlan::one_normal`]. Lower: threads of a screw lock.
 const ONE_NORMAL: Real = 0.99999;
 
@@ -314,7 +318,8 @@ const LINE: Real = 1.0e-3;
 
 impl PatchPlan {
     /// Returns up to four of `points`, which have distances. The first one is deepest. The body reaches the
-    /// others after the least turn. They are far outside the convex hull, seen along `normal`, and hardly above the first one.
+    /// others after the least turn. They are far outside the convex hull, seen along `normal`, and hardly above the first one,
+    /// compared with its depth.
     pub(super) fn outermost(
         self,
         points: &[(Vec3, Real)],
@@ -326,11 +331,12 @@ impl PatchPlan {
         }
         beyond.begin(points, normal);
         let (mut chosen, (_, deepest)) = (Chosen::from_iter([0]), points[0]);
+        let equal_depth = self.equal_depth + SUNK * (-deepest).max(0.0);
         beyond.add(0);
         let mut least = 0.0;
         while !chosen.is_full() {
             let weighed = points.iter().zip(beyond.squares()).map(|((_, distance), square)| {
-                let hover = (distance - deepest).max(0.0) / self.equal_depth;
+                let hover = (distance - deepest).max(0.0) / equal_depth;
                 square / (1.0 + hover).powi(2)
             });
             let farthest = |most: (usize, Real), next: (usize, Real)| {
@@ -450,22 +456,30 @@ mod tests {
             chosen.to_vec()
         };
         let mut points = at(&[
-            [0.0, 0.0, -0.2],
-            [1.0, 0.3, -0.2],
-            [3.0, 0.0, -0.2],
-            [1.0, -0.5, -0.2],
-            [2.0, 0.9, -0.2],
-            [2.0, -0.4, -0.2],
+            [0.0, 0.0, 0.0],
+            [1.0, 0.3, 0.0],
+            [3.0, 0.0, 0.0],
+            [1.0, -0.5, 0.0],
+            [2.0, 0.9, 0.0],
+            [2.0, -0.4, 0.0],
         ]);
         assert_eq!(chosen(&points), [0, 2, 3, 4]);
-        points[4].1 = -0.1;
+        points[4].1 = 0.1;
         assert_eq!(chosen(&points), [0, 1, 2, 3]);
         // Ends of two arcs that touch come before points farther aside that hover.
-        let arcs = [[-0.9, 0.4, -0.2], [-0.9, -0.4, -0.2], [0.9, 0.4, -0.2], [0.9, -0.4, -0.2]];
-        let aside = [[0.0, 1.3, -0.19], [0.0, -1.3, -0.19]];
+        let arcs = [[-0.9, 0.4, 0.0], [-0.9, -0.4, 0.0], [0.9, 0.4, 0.0], [0.9, -0.4, 0.0]];
+        let aside = [[0.0, 1.3, 0.01], [0.0, -1.3, 0.01]];
         assert_eq!(chosen(&at(&[&arcs[..], &aside].concat())), [0, 1, 2, 3]);
         let line = [0.0, 1.0, 2.0, 3.0, 2.5].map(|x| [x, 0.0, -0.2]);
         assert_eq!(chosen(&at(&line)), [0, 3]);
+        // A disc that is deep stands on more than one arc of its rim.
+        let rim = (0..24).map(|i| {
+            let (sin, cos) = (TAU * i as Real / 24.0).sin_cos();
+            (Vec3::new(cos, 0.0, sin), -0.3 - 0.1 * cos)
+        });
+        let rim: Vec<(Vec3, Real)> = rim.collect();
+        let across = chosen(&rim).into_iter().map(|i| rim[i].0.x).fold(1.0, Real::min);
+        assert!(across < 0.0, "{across}");
         // A plate that is aslant still has its corners.
         let aslant = [0.0, 0.1, 0.2, 0.5, 0.9, 1.0].map(|x| [x, 0.0, 0.3 * x]);
         assert_eq!(chosen(&at(&aslant)), [0, 5]);

@@ -19,7 +19,7 @@ use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleCon
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
-use super::islands::{Crossing, SheetSide, Support};
+use super::islands::{Crossing, Support};
 use super::triangle_contacts::in_local;
 use super::triangle_shape::ShapeFacets;
 use super::triangle_shapes::{
@@ -31,11 +31,6 @@ use crate::mesh::BEHIND;
 /// more, in prediction distances. Parry's number for constrained normals. Higher: bodies are pushed
 /// out on their far sides; lower: more second passes.
 const SHALLOW: f64 = 5.0;
-
-/// Greatest depth of a solid's middle behind a sheet that still pushes it to the front, in half
-/// heights of the solid. Higher: bodies from behind are pulled through; lower: bodies that hit a
-/// ground fast fall out below.
-const LEAN: f64 = 0.33;
 
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are turned
 /// in vain; lower: slanted contacts keep their normals.
@@ -50,6 +45,7 @@ pub(super) const LIP: f64 = 0.25;
 const THIN: f64 = 0.03;
 
 /// Length by which a ray between two triangles that have passed each other starts and ends within them, in their distance.
+/// Also the share of the way to the middle of a triangle at which a second point is tested.
 /// Higher: thin walls in each other are pushed together. Lower: rounding decides where rays start.
 const WITHIN: f64 = 0.01;
 
@@ -83,8 +79,8 @@ impl TriangleShapes<'_> {
 
 /// Two triangles and the surfaces around them. Turns contacts of the triangles into contacts of the surfaces.
 pub(super) struct SurfaceFilter<'a> {
-    shapes: &'a TriangleShapes<'a>,
-    pair: [u32; 2],
+    pub(super) shapes: &'a TriangleShapes<'a>,
+    pub(super) pair: [u32; 2],
     /// The triangles.
     local: &'a TrianglePair,
     /// Surfaces of both shapes, if known.
@@ -157,11 +153,27 @@ impl<'a> SurfaceFilter<'a> {
         let is_solid = self.are_solid();
         // A local minimum does not point inside: spares the test.
         let points_inside = |i: usize| self.points_inside(i, contact);
-        let has_passed = (is_solid[0] || is_solid[1])
+        (is_solid[0] || is_solid[1])
             && !(is_solid[0] && is_first_minimum)
-            && (0..2).all(|i| !is_solid[i] || points_inside(i));
-        let ends_between = |i: usize| is_solid[i] && self.ends_between(i, contact);
-        has_passed && !(ends_between(0) && ends_between(1))
+            && (0..2).all(|i| !is_solid[i] || points_inside(i))
+            && self.is_way_inside(is_solid, contact)
+    }
+
+    /// Returns true if the other point of a contact is in a solid that does not end before. If both solids end between the
+    /// points, they are thin walls, and their outer sides have the contact.
+    fn is_way_inside(&self, is_solid: [bool; 2], contact: &TriangleContact) -> bool {
+        let TriangleContact { point1, point2, distance, .. } = *contact;
+        let length = ((1.0 - 2.0 * WITHIN) * distance) as Real;
+        let holds_way = |i: usize| {
+            let (shape, way) = (&self.shapes[i], self.way(i, contact));
+            let [a, b, c] = self.local.corners[1 - i];
+            // The point may be at a border of the solid though the triangle is in it.
+            let beside = [point2, point1][i].lerp((a + b + c) / 3.0, WITHIN);
+            let beside = self.in_shape(i, beside).as_vec3();
+            !shape.ends_within(&way, length)
+                && (shape.may_hold(way.point_at(length)) || shape.may_hold(beside))
+        };
+        is_solid != [true; 2] || (0..2).any(holds_way)
     }
 
     /// Returns true if both points of a contact are local minima of the distance.
@@ -187,7 +199,7 @@ impl<'a> SurfaceFilter<'a> {
     }
 
     /// Returns the smaller shape.
-    fn smaller(&self) -> Option<usize> {
+    pub(super) fn smaller(&self) -> Option<usize> {
         let [size1, size2] = [0, 1].map(|i| self.shapes[i].bounds().half_extents().length());
         (size1 != size2).then_some(usize::from(size2 < size1))
     }
@@ -205,7 +217,7 @@ impl<'a> SurfaceFilter<'a> {
     }
 
     /// Returns the normal of a triangle, and the height of the middle of the other shape over it.
-    fn middle_over(&self, i: usize) -> (DVec3, f64) {
+    pub(super) fn middle_over(&self, i: usize) -> (DVec3, f64) {
         let [a, b, c] = self.local.corners[i];
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center());
@@ -341,22 +353,29 @@ impl<'a> SurfaceFilter<'a> {
         Some(TriangleContact { normal, distance, point1, point2, ..*contact })
     }
 
-    /// Returns true if a solid ends between the points of a contact that leads into both. If both solids do, they are thin
-    /// walls, and their outer sides have the contact.
-    fn ends_between(&self, i: usize, contact: &TriangleContact) -> bool {
-        let TriangleContact { normal, distance, .. } = *contact;
-        let way = self.in_frame(i, [normal, -normal][i]);
-        let start = self.place(i, contact) + WITHIN * distance * way;
-        let ray = Ray::new(start.as_vec3(), way.as_vec3());
-        let most = ((1.0 - 2.0 * WITHIN) * distance) as Real;
-        self.shapes[i].ends_within(&ray, most)
+    /// Returns the ray from the point of a contact on a shape to the other point, in the frame of the shape. It begins off the
+    /// surface.
+    fn way(&self, i: usize, contact: &TriangleContact) -> Ray {
+        let way = self.direction(i, contact);
+        let start = self.place(i, contact) + WITHIN * contact.distance * way;
+        Ray::new(start.as_vec3(), way.as_vec3())
+    }
+
+    /// Returns the direction in which the normal of a contact leads away from its point on a shape, in the frame of the shape.
+    fn direction(&self, i: usize, TriangleContact { normal, .. }: &TriangleContact) -> DVec3 {
+        self.in_frame(i, [*normal, -*normal][i])
     }
 
     /// Returns the point of a contact on a shape, in the frame of the shape.
     fn place(&self, i: usize, contact: &TriangleContact) -> DVec3 {
+        self.in_shape(i, [contact.point1, contact.point2][i])
+    }
+
+    /// Returns a point relative to the origin of two triangles in the frame of a shape.
+    fn in_shape(&self, i: usize, point: DVec3) -> DVec3 {
         match i {
-            0 => self.local.origin.as_dvec3() + contact.point1,
-            _ => self.shapes.pose.placement12.to_frame2(contact.point2, self.local.origin),
+            0 => self.local.origin.as_dvec3() + point,
+            _ => self.shapes.pose.placement12.to_frame2(point, self.local.origin),
         }
     }
 
@@ -366,14 +385,14 @@ impl<'a> SurfaceFilter<'a> {
     }
 
     /// Returns a direction of frame 1 in the frame of a shape.
-    fn in_frame(&self, i: usize, direction: DVec3) -> DVec3 {
+    pub(super) fn in_frame(&self, i: usize, direction: DVec3) -> DVec3 {
         if i == 0 { direction } else { self.shapes.pose.placement12.inverse * direction }
     }
 
     /// Returns true if the point of a contact on a shape is a local minimum of the distance.
     #[inline(always)]
     fn is_minimum(&self, i: usize, contact: &TriangleContact) -> bool {
-        let direction = self.in_frame(i, [contact.normal, -contact.normal][i]);
+        let direction = self.direction(i, contact);
         let to = Some((self.place(i, contact), feature(contact, 1 - i)));
         let is_minimum = |surface: &Around<_>| {
             surface.is_local_minimum(self.pair[i], feature(contact, i), direction, to)
@@ -383,7 +402,7 @@ impl<'a> SurfaceFilter<'a> {
 
     /// Returns true if the normal of a contact points into a shape.
     fn points_inside(&self, i: usize, contact: &TriangleContact) -> bool {
-        let direction = self.in_frame(i, [contact.normal, -contact.normal][i]);
+        let direction = self.direction(i, contact);
         let points_inside = |surface: &Around<_>| {
             surface.points_inside(self.pair[i], feature(contact, i), direction)
         };
@@ -403,53 +422,6 @@ impl<'a> SurfaceFilter<'a> {
     fn least_square(&self, i: usize) -> f64 {
         let Some(Around { facets, .. }) = &self.surfaces[i] else { return 0.0 };
         facets.cones(self.pair[i]).least_square(false)
-    }
-
-    /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller sheet,
-    /// is. `None` for two solids, and if the solid is larger than the sheet.
-    fn sheet_side(&self, is_solid: [bool; 2]) -> Option<SheetSide> {
-        if is_solid == [true; 2] {
-            return None;
-        }
-        let smaller = self.smaller();
-        let solid = match is_solid {
-            [true, _] => 0,
-            [_, true] => 1,
-            _ => match smaller {
-                Some(smaller) => smaller,
-                // Of two sheets of one size, either order would give another side.
-                None => {
-                    let [middle1, middle2] = [0, 1].map(|i| self.shapes[i].bounds().center());
-                    let middle2 = self.shapes.pose.placement12.to_frame1(middle2, Vec3::ZERO);
-                    let between = middle2 - middle1.as_dvec3();
-                    let height = between.length();
-                    return Some(SheetSide { shape: None, away: between.try_normalize()?, height });
-                }
-            },
-        };
-        if smaller == Some(1 - solid) {
-            return None;
-        }
-        let (normal, height) = self.middle_over(1 - solid);
-        let (away, own) = match solid {
-            0 => (-normal, normal),
-            _ => (normal, self.shapes.pose.placement12.inverse * normal),
-        };
-        let half_height = own.abs().dot(self.shapes[solid].bounds().half_extents().as_dvec3());
-        let leaning = height + LEAN * half_height;
-        // The box may be much higher than the shape.
-        let is_doubtful = height < 0.0 && leaning > 0.0;
-        let height = if is_doubtful { self.leaning(1 - solid, height, own) } else { leaning };
-        Some(SheetSide { shape: Some(1 - solid), away, height })
-    }
-
-    /// Returns the height of the middle of a solid over the front of a triangle, with a preference for that side. `normal` is the
-    /// normal of the triangle in the frame of the solid. A triangle with a double that is wound the other way has no front.
-    fn leaning(&self, sheet: usize, height: f64, normal: DVec3) -> f64 {
-        if self.shapes[sheet].is_two_sided(self.pair[sheet]) {
-            return height;
-        }
-        height + LEAN * f64::from(self.shapes[1 - sheet].height(normal.as_vec3()))
     }
 
     /// Returns true if a contact is deep since a point is far inside, not since this triangle is on

@@ -199,6 +199,19 @@ impl TriangleShape<'_> {
         ends_within(mesh.view.mesh, ray, length, self.outward())
     }
 
+    /// Returns true if a point may be in the body. Rays disagree on points of the surface. Sheets have the body behind them.
+    pub(super) fn may_hold(&self, point: Vector) -> bool {
+        let is_inside = |sign: i32| f64::from(sign) * self.outward() > 0.0;
+        match self {
+            Self::Mesh(MeshShape { surface: Some(surface), .. })
+                if surface.kind() != SurfaceKind::Sheet =>
+            {
+                surface.winding_sign(point).is_none_or(is_inside)
+            }
+            _ => self.nearest(point).is_none_or(|(_, behind)| behind >= 0.0),
+        }
+    }
+
     /// Returns the nearest triangle to a point, if that is within a distance. The triangle of a height field may be
     /// another that is near.
     pub(super) fn nearest_triangle(&self, point: Vector, within: Real) -> Option<u32> {

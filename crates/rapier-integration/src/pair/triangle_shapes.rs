@@ -69,6 +69,19 @@ pub(crate) struct TriangleShapes<'q> {
     pub(super) filter_distance: f64,
     /// See [`reach`](Self::reach).
     pub(super) reach: OnceLock<Real>,
+    /// Position of the other shape over each shape that is a [sheet](super::sheets).
+    pub(super) over_sheets: [OnceLock<Option<OverSheet>>; 2],
+}
+
+/// Position of the middle of a shape over the nearest point of a sheet.
+#[derive(Copy, Clone)]
+pub(super) struct OverSheet {
+    /// Direction from the back of the sheet to the front, in frame 1.
+    pub(super) front: DVec3,
+    /// Height over the front.
+    pub(super) height: f64,
+    /// Height of the shape over its middle.
+    pub(super) half_height: f64,
 }
 
 impl<'q> Index<usize> for TriangleShapes<'q> {

@@ -155,6 +155,9 @@ impl PairQuery for TriangleQuery<'_> {
         self.add_passing(first);
         std::mem::swap(&mut first.contacts, contacts);
         let FirstPass { islands, clipped, is_near, upright, .. } = first;
+        if self.shapes.is_side_doubtful(&islands.crossings) {
+            return self.hold(candidates, limits, contacts);
+        }
         let lead_one_way = meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
         if islands.finish_first_pass(separation, |pair, way| self.overlap(pair, way)) {
@@ -166,6 +169,7 @@ impl PairQuery for TriangleQuery<'_> {
             self.shapes.reject_aside(directions, islands, contacts);
         }
         self.reject_passed(islands, passed, contacts);
+        self.shapes.reject_through(&islands.crossings, contacts);
         if contacts.is_empty() {
             let is_in_both = islands.separation.is_some();
             let held = HeldMesh::of(&self.shapes);
@@ -265,6 +269,20 @@ impl TriangleQuery<'_> {
                 first.contacts.extend(contact.map(|contact| (pair, contact)));
             }
         }
+    }
+
+    /// Replaces all contacts by the contacts of single triangles. These push both ways.
+    fn hold(
+        &self,
+        candidates: &[Candidate<Hint>],
+        limits: Limits,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        contacts.clear();
+        let contact = |of: &Candidate<Hint>| self.contact_of_triangles(of.subshapes);
+        let is_near = |(_, hit): &TriangleHit| hit.contact.distance <= limits.reach;
+        let may_touch = candidates.iter().filter(|candidate| limits.may_touch(candidate));
+        contacts.extend(may_touch.filter_map(contact).filter(is_near));
     }
 
     /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.

@@ -81,7 +81,7 @@ impl Surface {
         triangles: &impl RayTriangles,
         point: DVec3,
         memo: &PlaceMemo,
-    ) -> i32 {
+    ) -> Option<i32> {
         sides::RayMesh::new(triangles, self.open.as_ref(), memo, sides::WallLimit::SIDE)
             .winding_sign(point)
     }

@@ -11,6 +11,7 @@ use std::cell::{Cell, OnceCell};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
+use arrayvec::ArrayVec;
 use glamx::DVec3;
 
 use super::slopes::PlaceMemo;
@@ -144,8 +145,8 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
 }
 
 /// Returns the sign of the winding number of a closed mesh around a point, by two rays. It is 1 within the body, -1 within faces
-/// that lead inwards, and 0 elsewhere.
-pub fn winding_sign(triangles: &impl RayTriangles, point: DVec3, memo: &PlaceMemo) -> i32 {
+/// that lead inwards, and 0 elsewhere. `None` if the rays disagree, as they may where the point is on the surface.
+pub fn winding_sign(triangles: &impl RayTriangles, point: DVec3, memo: &PlaceMemo) -> Option<i32> {
     RayMesh::new(triangles, None, memo, WallLimit::UNKNOWN).winding_sign(point)
 }
 
@@ -220,12 +221,12 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         if is_face { Side::Outer } else { side }
     }
 
-    /// Returns the sign of the winding number around a point; 0 if two rays disagree. Many layers count as a body.
-    pub(super) fn winding_sign(&self, point: DVec3) -> i32 {
-        let Some(rays) = Rays::from_point(self, point) else { return 0 };
+    /// Returns the sign of the winding number around a point, if two rays agree. Many layers count as a body.
+    pub(super) fn winding_sign(&self, point: DVec3) -> Option<i32> {
+        let rays = Rays::from_point(self, point)?;
         let sign = |i| rays.winding(i, |other| self.counts(other)).map_or(1, i32::signum);
         let [one, other] = [0, 1].map(sign);
-        if one == other { one } else { 0 }
+        (one == other).then_some(one)
     }
 
     /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
@@ -409,6 +410,9 @@ struct Hit {
     is_exact: bool,
 }
 
+/// Hits of a ray.
+type Hits = ArrayVec<Hit, MOST_HITS>;
+
 /// A ray to the front of a triangle and one to the back.
 struct Rays<'a, T> {
     mesh: &'a RayMesh<'a, T>,
@@ -416,8 +420,8 @@ struct Rays<'a, T> {
     to_front: DVec3,
     /// Length at which they begin.
     skipped: f64,
-    /// What they meet, the nearest first; `None` for [too many](MOST_HITS).
-    hits: [OnceCell<Option<Vec<Hit>>>; 2],
+    /// Hits of both rays, the nearest first; `None` for [too many](MOST_HITS).
+    hits: [OnceCell<Option<Hits>>; 2],
 }
 
 impl<'a, T: RayTriangles> Rays<'a, T> {
@@ -497,24 +501,21 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         Some(winding(hits.as_ref()?.iter().filter(|hit| counts(hit.triangle))))
     }
 
-    fn hits(&self, direction: DVec3) -> Option<Vec<Hit>> {
-        let mut hits = Vec::new();
+    fn hits(&self, direction: DVec3) -> Option<Hits> {
+        let (mut hits, mut is_full) = (Hits::new(), false);
         let mut work = WORK_OF_RAY;
         self.mesh.triangles.along(self.start, direction, &mut |triangle| {
             work += 1;
             let corners = self.mesh.triangles.corners(triangle).map(|corner| corner - self.start);
             let hit = hit(&corners, direction).filter(|(length, ..)| *length > self.skipped);
-            hits.extend(hit.map(|(length, sign, is_at_border)| Hit {
-                length,
-                sign,
-                triangle,
-                is_exact: !is_at_border && self.mesh.is_of_closed(triangle),
-            }));
-            if hits.len() > MOST_HITS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            let Some((length, sign, is_at_border)) = hit else { return ControlFlow::Continue(()) };
+            let is_exact = !is_at_border && self.mesh.is_of_closed(triangle);
+            is_full = hits.try_push(Hit { length, sign, triangle, is_exact }).is_err();
+            if is_full { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         self.mesh.work.set(self.mesh.work.get() + work);
         hits.sort_unstable_by(|a, b| a.length.total_cmp(&b.length));
-        (hits.len() <= MOST_HITS).then_some(hits)
+        (!is_full).then_some(hits)
     }
 }
 

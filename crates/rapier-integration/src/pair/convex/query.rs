@@ -293,7 +293,7 @@ impl ConvexQuery<'_> {
     ) -> bool {
         let is_within = self.pair.parts.with(part, |shape| {
             let middle = self.placed(part, &shape, scratch).in_mesh(shape.shape.middle()?);
-            Some(is_covered(self.pair.mesh.mesh, middle) && surface.winding_sign(middle) > 0)
+            Some(is_covered(self.pair.mesh.mesh, middle) && surface.winding_sign(middle) == Some(1))
         });
         is_within.flatten() == Some(true)
     }
