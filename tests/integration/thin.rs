@@ -29,14 +29,14 @@ fn ask(query: &Question) -> Vec<Manifold> {
     query.fresh(&every())
 }
 
-/// A plate whose middle is near the sheet may come from either side, so the contacts of the triangles hold it. Would catch a
-/// plate that is pushed through. Would also catch plates at rest, sunk by a millimetre, with contacts to both sides.
+/// A plate whose middle is a little behind the sheet may come from either side, so the contacts of the triangles hold it. Would
+/// catch a plate that is pushed through. Would also catch plates at rest, sunk by a millimetre, with contacts to both sides.
 #[test]
-fn a_plate_in_the_midst_of_a_sheet_is_held() {
+fn a_plate_a_little_behind_a_sheet_is_held() {
     let floor = floor();
-    for (cells, height) in [(1, 0.005), (1, 0.0), (4, 0.008), (1, -0.008), (4, -0.012)] {
+    for (cells, height) in [(1, -0.03), (4, -0.03), (1, -0.025)] {
         let plate = plate(cells);
-        for tilt in [0.02, 0.05, 0.1] {
+        for tilt in [0.06, 0.08] {
             let turn = Quat::from_rotation_y(0.3) * Quat::from_rotation_x(tilt);
             let pose = Pose::from_parts(Vec3::new(0.13, height, 0.21), turn);
             let query = Question::new(&floor, &plate, pose);

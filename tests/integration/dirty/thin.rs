@@ -80,18 +80,16 @@ fn dropped(ground: ColliderBuilder, body: &Mesh, height: f32) -> Vec<f32> {
 }
 
 /// Plates of 2 cm sink in by more than they are thick. Would catch plates that go through since triangles of a wavy
-/// ground disagree on their side. Four of 36 went through the ground that faces up.
+/// ground disagree on their side. Four of 36 went through.
 #[test]
-fn plates_stay_on_wavy_grounds_that_face_up_or_down() {
+fn plates_stay_on_wavy_grounds() {
     let wave = |at: Vec3| at.with_y(0.05 * (2.0 * at.x).sin() * (1.7 * at.z).cos());
     let ground = mesh::floor(20.0, 120).mapped(wave);
     let plate = mesh::cuboid(Vec3::new(0.4, 0.01, 0.4), 2);
-    for ground in [ground.clone(), mesh::turned_inside_out(ground)] {
-        for height in [0.4, 0.6] {
-            let heights = dropped(ColliderBuilder::new(ground.shape()), &plate, height);
-            let lost = heights.iter().filter(|&&height| height < -0.2).count();
-            assert_eq!(lost, 0, "from {height}");
-        }
+    for height in [0.4, 0.6, 0.8] {
+        let heights = dropped(ColliderBuilder::new(ground.shape()), &plate, height);
+        let lost = heights.iter().filter(|&&height| height < -0.2).count();
+        assert_eq!(lost, 0, "from {height}");
     }
 }
 

@@ -1,8 +1,8 @@
 //! The side of a sheet on which a body is.
 //!
 //! A sheet has two sides, and a body that crosses it leaves to the side of its middle. The nearest point of the sheet
-//! to the middle tells that side for all triangles, so they agree on wavy grounds. A body whose middle is about as high
-//! as the sheet may come from either side. The contacts of the triangles then hold it, as they push both ways.
+//! to the middle tells that side for all triangles, so they agree on wavy grounds. A body whose middle is a little
+//! behind the sheet may come from either side. The contacts of the triangles then hold it, as they push both ways.
 
 use glamx::DVec3;
 
@@ -52,14 +52,17 @@ impl TriangleShapes<'_> {
         Some((pair, sheet, self.over_sheet(sheet)?))
     }
 
-    /// Returns true if triangles cross a sheet whose body may come from either side. A body at rest, which sinks in a little,
-    /// does not.
+    /// Returns true if triangles cross a sheet, and the body is a little behind the front and may come from either side. A body
+    /// at rest, which sinks in a little, does not.
     pub(super) fn is_side_doubtful(&self, crossings: &[Crossing]) -> bool {
-        let Some((.., over)) = self.crossed_sheet(crossings) else { return false };
+        let Some((pair, sheet, over)) = self.crossed_sheet(crossings) else { return false };
+        if self.leaning(over, sheet, pair[sheet]) > 0.0 {
+            return false;
+        }
         let OverSheet { height, half_height, .. } = over;
         let sunk = half_height - height.abs();
         let is_at_rest = (0.0..=LIP * self.filter_unit()).contains(&sunk);
-        height == 0.0 || !is_at_rest && height.abs() < self.filter_distance
+        !is_at_rest && height.abs() < self.filter_distance
     }
 
     /// Removes the contacts that push a body through a sheet which its triangles cross.
