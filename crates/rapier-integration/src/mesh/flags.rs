@@ -1,4 +1,4 @@
-//! What is known of a triangle, in 32 bits that threads share.
+//! Flags store the results of searches around a triangle in 32 bits. Threads share them.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 

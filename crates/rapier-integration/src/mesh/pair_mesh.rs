@@ -208,8 +208,8 @@ impl<'a> LazySurface<'a> {
     }
 
     /// Returns the sign of the winding number around a [covered](super::is_covered) point: 1 within a body, -1 within faces that
-    /// lead inwards, 0 elsewhere and for a sheet. `None` if rays disagree. The nearest triangle cannot tell the sign, as it may be of a part that pierces
-    /// the surface.
+    /// lead inwards, 0 elsewhere and for a sheet. `None` if rays disagree. The nearest triangle cannot tell the sign, as it may
+    /// be of a part that pierces the surface.
     pub(crate) fn winding_sign(&self, point: Vec3) -> Option<i32> {
         let is_closed = self.kind() != SurfaceKind::Sheet;
         if is_closed { self.facets().winding_sign(point) } else { Some(0) }

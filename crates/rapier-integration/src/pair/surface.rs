@@ -166,12 +166,14 @@ impl<'a> SurfaceFilter<'a> {
         let length = ((1.0 - 2.0 * WITHIN) * distance) as Real;
         let holds_way = |i: usize| {
             let (shape, way) = (&self.shapes[i], self.way(i, contact));
-            let [a, b, c] = self.local.corners[1 - i];
             // The point may be at a border of the solid though the triangle is in it.
-            let beside = [point2, point1][i].lerp((a + b + c) / 3.0, WITHIN);
-            let beside = self.in_shape(i, beside).as_vec3();
+            let beside = || {
+                let [a, b, c] = self.local.corners[1 - i];
+                let beside = [point2, point1][i].lerp((a + b + c) / 3.0, WITHIN);
+                self.in_shape(i, beside).as_vec3()
+            };
             !shape.ends_within(&way, length)
-                && (shape.may_hold(way.point_at(length)) || shape.may_hold(beside))
+                && (shape.may_hold(way.point_at(length)) || shape.may_hold(beside()))
         };
         is_solid != [true; 2] || (0..2).any(holds_way)
     }
