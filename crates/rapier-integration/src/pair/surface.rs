@@ -12,6 +12,7 @@
 //! Crossing surfaces never stay without a contact: an island without one gets the best there is
 //! ([`OverlapIslands`](super::islands::OverlapIslands)).
 
+use arrayvec::ArrayVec;
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use parry3d::query::Ray;
@@ -162,20 +163,27 @@ impl<'a> SurfaceFilter<'a> {
     /// Returns true if the other point of a contact is in a solid that does not end before. If both solids end between the
     /// points, they are thin walls, and their outer sides have the contact.
     fn is_way_inside(&self, is_solid: [bool; 2], contact: &TriangleContact) -> bool {
-        let TriangleContact { point1, point2, distance, .. } = *contact;
-        let length = ((1.0 - 2.0 * WITHIN) * distance) as Real;
-        let holds_way = |i: usize| {
-            let (shape, way) = (&self.shapes[i], self.way(i, contact));
-            // The point may be at a border of the solid though the triangle is in it.
-            let beside = || {
-                let [a, b, c] = self.local.corners[1 - i];
-                let beside = [point2, point1][i].lerp((a + b + c) / 3.0, WITHIN);
-                self.in_shape(i, beside).as_vec3()
-            };
-            !shape.ends_within(&way, length)
-                && (shape.may_hold(way.point_at(length)) || shape.may_hold(beside()))
+        if is_solid != [true; 2] {
+            return true;
+        }
+        let length = ((1.0 - 2.0 * WITHIN) * contact.distance) as Real;
+        let goes_on = |i: &usize| !self.shapes[*i].ends_within(&self.way(*i, contact), length);
+        let on_ways: ArrayVec<usize, 2> = (0..2).filter(goes_on).collect();
+        on_ways.iter().any(|&i| self.leads_behind(i, contact))
+            || on_ways.iter().any(|&i| self.may_hold(i, contact, length))
+    }
+
+    /// Returns true if the other triangle of a contact has a point in a solid, or if that is in doubt. `length` is that of
+    /// the way to the other triangle.
+    fn may_hold(&self, i: usize, contact: &TriangleContact, length: Real) -> bool {
+        let shape = &self.shapes[i];
+        // The point may be at a border of the solid though the triangle is in it.
+        let beside = || {
+            let [a, b, c] = self.local.corners[1 - i];
+            let point = [contact.point2, contact.point1][i];
+            self.in_shape(i, point.lerp((a + b + c) / 3.0, WITHIN)).as_vec3()
         };
-        is_solid != [true; 2] || (0..2).any(holds_way)
+        shape.may_hold(self.way(i, contact).point_at(length)) || shape.may_hold(beside())
     }
 
     /// Returns true if both points of a contact are local minima of the distance.
@@ -409,6 +417,15 @@ impl<'a> SurfaceFilter<'a> {
             surface.points_inside(self.pair[i], feature(contact, i), direction)
         };
         self.surfaces[i].as_ref().is_some_and(points_inside)
+    }
+
+    /// Returns true if the normal of a contact leads behind all triangles at its point on a shape.
+    fn leads_behind(&self, i: usize, contact: &TriangleContact) -> bool {
+        let direction = self.direction(i, contact);
+        let leads_behind = |surface: &Around<_>| {
+            surface.leads_behind(self.pair[i], feature(contact, i), direction)
+        };
+        self.surfaces[i].as_ref().is_some_and(leads_behind)
     }
 
     /// Returns true if a surface ends at a feature, seen along an axis.
