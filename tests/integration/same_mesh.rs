@@ -28,10 +28,10 @@ fn touch(dispatcher: &SbbkDispatcher, mesh1: &TriMesh, mesh2: &TriMesh) -> Pair 
     pair
 }
 
+/// Asks at a pose and a little beside: an equal pose needs no second search.
 fn ask_twice(pair: &mut Pair, dispatcher: &SbbkDispatcher, query: &Question) {
-    for _ in 0..2 {
-        pair.ask(dispatcher, query);
-    }
+    pair.ask(dispatcher, &query.at(query.pose.append_translation(Vector::splat(1e-4))));
+    pair.ask(dispatcher, query);
 }
 
 fn with_idle_bytes(limit: usize) -> SbbkDispatcher {
@@ -90,7 +90,7 @@ fn meshes_far_apart_need_no_tree() {
     assert_eq!(counts(&dispatcher), [0, 0, 0, 0]);
     pair.ask(&dispatcher, &far.at(near()));
     assert_eq!(counts(&dispatcher), [0, 0, 0, 0], "it may leave again");
-    pair.ask(&dispatcher, &far.at(near()));
+    ask_twice(&mut pair, &dispatcher, &far.at(near()));
     assert_eq!(counts(&dispatcher), [1, 0, 1, 0]);
 }
 

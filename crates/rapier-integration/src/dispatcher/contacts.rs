@@ -11,7 +11,7 @@ use sbbk_core::traverse::DescentCounts;
 
 use super::SbbkDispatcher;
 use crate::TriangleContacts;
-use crate::mesh::{MeshView, are_near, is_near, may_be_inside};
+use crate::mesh::{MeshView, TwoMeshes, is_near};
 use crate::pair::{
     ConvexPair, Field, MeshPair, MeshPlace, PairPose, Parts, QueryOutcome, ShapeView,
     update_manifolds,
@@ -71,8 +71,12 @@ impl SbbkDispatcher {
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
                 let meshes = kinds.meshes.then_some([mesh1, mesh2])?;
-                let may_be_inside = || self.config.has_surfaces() && may_be_inside(meshes, pos12);
-                if is_new && !are_near(meshes, pos12, prediction) && !may_be_inside() {
+                let are_apart = || {
+                    let two = TwoMeshes::new(meshes, pos12);
+                    let may_be_inside = || self.config.has_surfaces() && two.may_be_inside();
+                    two.are_apart(prediction) && !may_be_inside()
+                };
+                if is_new && are_apart() {
                     return Some(Kind::Apart);
                 }
                 return Some(Kind::Triangles(self.view(meshes)?.map(ShapeView::Mesh)));

@@ -9,7 +9,7 @@ use parry3d::query::{
 use parry3d::shape::Shape;
 
 use super::{SbbkDispatcher, rigid_mesh};
-use crate::mesh::{are_near, is_near};
+use crate::mesh::{TwoMeshes, is_near};
 use crate::pair::{ConvexSearch, ConvexShape, MeshPlace};
 use crate::query::{MeshQuery, NonlinearCast, Query};
 
@@ -34,7 +34,11 @@ impl SbbkDispatcher {
                 let meshes = self.config.kinds.meshes.then_some([mesh1, mesh2])?;
                 // Before all else: most pairs that a host asks about are apart.
                 return match apart {
-                    Some((distance, apart)) if !are_near(meshes, pos12, distance) => answer(apart),
+                    Some((distance, apart))
+                        if TwoMeshes::new(meshes, pos12).are_apart(distance) =>
+                    {
+                        answer(apart)
+                    }
                     _ => answer(then(Query::Meshes(MeshQuery::new(self.view(meshes)?, pos12)))),
                 };
             }

@@ -9,7 +9,7 @@
 //!   4 µs for 1000 triangles, so each pair computes one hash.
 //! * [`ContentHash::of_samples`], for a large unregistered mesh: a hash of addresses and samples. An edit of
 //!   few vertices in place may go unnoticed: the mesh then keeps its old neighbours and sides.
-//! * [`MeshToken`]: 64 bits in constant time, computed at every query. If the token has changed, the
+//! * [`MeshToken`]: some words in constant time, compared at every query. If the token has changed, the
 //!   pair forgets the mesh.
 //!
 //! An edit by `TriMesh::update_vertices` that moves neither the root box nor a sampled vertex leaves
@@ -19,7 +19,7 @@
 use std::hash::Hasher;
 
 use parry3d::shape::{TriMesh, TriMeshFlags};
-use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+use xxhash_rust::xxh3::Xxh3;
 
 /// Identifies a mesh by its content, or a large unregistered mesh by addresses and samples.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
@@ -43,7 +43,7 @@ impl ContentHash {
         const SAMPLES: usize = 512;
         let (vertices, triangles) = (mesh.vertices(), mesh.indices());
         let mut hasher = Xxh3::new();
-        hasher.write_u64(MeshToken::of(mesh).0);
+        hasher.update(bytemuck::cast_slice(&MeshToken::of(mesh).0));
         for i in 0..SAMPLES {
             hasher.update(bytemuck::bytes_of(&vertices[i * vertices.len() / SAMPLES]));
             hasher.update(bytemuck::bytes_of(&triangles[i * triangles.len() / SAMPLES]));
@@ -53,19 +53,20 @@ impl ContentHash {
 }
 
 /// Identifies a mesh by its buffers, flags, root box and a few samples, in constant time.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct MeshToken(pub(super) u64);
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct MeshToken([u32; Self::WORDS]);
 
 impl MeshToken {
     /// Number of sampled vertices and triangles, evenly spread. Higher: more edits in place change the
     /// token; lower: each query is quicker.
     const SAMPLES: usize = 4;
+    const WORDS: usize = 12 + 6 * Self::SAMPLES;
 
     pub(crate) fn of(mesh: &TriMesh) -> Self {
         let (vertices, triangles) = (mesh.vertices(), mesh.indices());
         let root = mesh.bvh().root_aabb();
         let sample = |i: usize, count: usize| i * count / Self::SAMPLES;
-        let mut words = [0u32; 6 + 6 + 6 * Self::SAMPLES];
+        let mut words = [0; Self::WORDS];
         let addresses = [vertices.as_ptr() as u64, triangles.as_ptr() as u64];
         words[0..4].copy_from_slice(bytemuck::cast_slice(&addresses));
         words[4] = vertices.len() as u32 ^ (triangles.len() as u32).rotate_left(16);
@@ -80,7 +81,7 @@ impl MeshToken {
                 words[3..].copy_from_slice(triangle);
             }
         }
-        Self(xxh3_64(bytemuck::cast_slice(&words)))
+        Self(words)
     }
 }
 

@@ -15,6 +15,5 @@ pub(crate) use neighbours::{MeshFacets, box_between, is_minimum};
 pub(crate) use pair_mesh::{Change, LazySurface, PairMesh};
 pub(crate) use store::{MeshStore, Registered};
 pub(crate) use view::{
-    BEHIND, MeshView, are_near, box_of, ends_within, exit, is_covered, is_near, may_be_inside,
-    nearest_triangle,
+    BEHIND, MeshView, TwoMeshes, box_of, ends_within, exit, is_covered, is_near, nearest_triangle,
 };

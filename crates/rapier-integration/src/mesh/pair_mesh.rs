@@ -17,7 +17,7 @@ pub(crate) enum PairMesh {
     /// No query has used the mesh.
     #[default]
     Unknown,
-    Rigid(RigidMesh),
+    Rigid(Box<RigidMesh>),
     /// The mesh may change between any two queries, so nothing is kept.
     Deformable,
 }
@@ -54,15 +54,16 @@ impl PairMesh {
             *self = Self::Deformable;
             return if is_other { Change::Replaced } else { Change::Unknown };
         }
+        let token = MeshToken::of(view.mesh);
         let change = match self {
-            Self::Rigid(mesh) if mesh.token == view.token && mesh.store_id == view.store.id => {
+            Self::Rigid(mesh) if mesh.token == token && mesh.store_id == view.store.id => {
                 return mesh.refresh(view);
             }
-            Self::Rigid(mesh) if mesh.token == view.token => Change::Unknown,
+            Self::Rigid(mesh) if mesh.token == token => Change::Unknown,
             Self::Unknown => Change::Unknown,
             Self::Rigid(_) | Self::Deformable => Change::Replaced,
         };
-        *self = Self::Rigid(RigidMesh::new(view));
+        *self = Self::Rigid(Box::new(RigidMesh::new(view, token)));
         change
     }
 
@@ -86,9 +87,9 @@ impl PairMesh {
 }
 
 impl RigidMesh {
-    fn new(view: &MeshView<'_>) -> Self {
+    fn new(view: &MeshView<'_>, token: MeshToken) -> Self {
         Self {
-            token: view.token,
+            token,
             store_id: view.store.id,
             searched_at: None,
             is_registered: false,

@@ -6,19 +6,18 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
-use arrayvec::ArrayVec;
-use glamx::Vec3;
+use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::{PointQuery, Ray, RayCast};
 use parry3d::shape::{CompositeShape, CompositeShapeRef, FeatureId, Shape, TriMesh};
+use sbbk_core::surface;
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
 use super::data::{MeshData, Tips};
-use super::identity::MeshToken;
 use super::store::MeshStore;
 
 /// Returns false if the BVH of a mesh has no triangle within `margin` of the box around a shape at
@@ -28,50 +27,68 @@ pub(crate) fn is_near(mesh: &TriMesh, shape: &dyn Shape, pos12: &Pose, margin: R
     !is_searched || has_near(mesh, &shape.compute_aabb(pos12), pos12, margin)
 }
 
-/// Returns false if the BVH of the larger mesh has no triangle within `margin` of the box around the
-/// other mesh.
-pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real) -> bool {
-    let roots = [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb());
-    if !roots.iter().all(is_valid) {
-        return true;
-    }
-    let ([larger, other], pose) = larger_first([mesh1, mesh2], pos12);
-    has_near(larger, &other.bvh().root_aabb().transform_by(&pose), &pose, margin)
+/// Two meshes at a pose, for tests that need no data of a pair.
+pub(crate) struct TwoMeshes<'a> {
+    larger: &'a TriMesh,
+    /// The other mesh in the frame of the larger one.
+    pose: Pose,
+    /// Box around the other mesh, in its own frame.
+    root: Aabb,
+    is_valid: bool,
 }
 
-/// Returns the larger mesh, the other one, and the pose of the other one in the frame of the larger.
-fn larger_first<'a>([mesh1, mesh2]: [&'a TriMesh; 2], pos12: &Pose) -> ([&'a TriMesh; 2], Pose) {
-    let size = |mesh: &TriMesh| mesh.bvh().root_aabb().half_extents().length_squared();
-    if size(mesh1) < size(mesh2) {
-        ([mesh2, mesh1], pos12.inverse())
-    } else {
-        ([mesh1, mesh2], *pos12)
+impl<'a> TwoMeshes<'a> {
+    pub(crate) fn new([mesh1, mesh2]: [&'a TriMesh; 2], pos12: &Pose) -> Self {
+        let [root1, root2] = [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb());
+        let is_valid = is_valid(&root1) && is_valid(&root2);
+        let size = |root: &Aabb| root.half_extents().length_squared();
+        if size(&root1) < size(&root2) {
+            Self { larger: mesh2, pose: pos12.inverse(), root: root1, is_valid }
+        } else {
+            Self { larger: mesh1, pose: *pos12, root: root2, is_valid }
+        }
     }
-}
 
-/// True if the first vertex of the smaller mesh is [covered](is_covered) by the larger one. Both must have
-/// triangles.
-pub(crate) fn may_be_inside(meshes: [&TriMesh; 2], pos12: &Pose) -> bool {
-    let ([larger, other], pose) = larger_first(meshes, pos12);
-    is_covered(larger, pose * other.vertices()[other.indices()[0][0] as usize])
+    /// Returns true if nothing of the larger mesh is within `margin` of the box around the other one.
+    pub(crate) fn are_apart(&self, margin: Real) -> bool {
+        let Self { larger, pose, root, is_valid, .. } = self;
+        *is_valid && !has_near(larger, &root.transform_by(pose), pose, margin)
+    }
+
+    /// True if the box around the smaller mesh is covered by the larger one, as [points](is_covered) are. So it is for each
+    /// mesh inside a closed one.
+    pub(crate) fn may_be_inside(&self) -> bool {
+        is_box_covered(self.larger, &self.root.transform_by(&self.pose))
+    }
 }
 
 /// True if each of the six rays from a point along the axes crosses the box of a triangle. So it is
 /// for each point inside a closed mesh, and for no point above a terrain.
 pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
+    is_box_covered(mesh, &Aabb::new(point, point))
+}
+
+/// True if a box, on each of the six ways along the axes, meets the box of a triangle.
+fn is_box_covered(mesh: &TriMesh, aabb: &Aabb) -> bool {
     let root = mesh.bvh().root_aabb();
-    if !root.contains_local_point(point) {
+    if !root.intersects(aabb) {
         return false;
     }
-    let sides = [root.mins - point, root.maxs - point];
-    let mut rays = sides.map(|side| [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| side * axis));
-    let rays = rays.as_flattened_mut();
-    // Short rays are the cheapest, and the most likely to cross nothing.
-    rays.sort_unstable_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
-    rays.iter().all(|&ray| {
+    let lengths = [aabb.mins - root.mins, root.maxs - aabb.maxs].map(|way| way.max(Vec3::ZERO));
+    let mut ways = [0, 1, 2, 3, 4, 5].map(|i| (i, lengths[i / 3][i % 3]));
+    // The shortest way is the cheapest, and the most likely to meet nothing.
+    if let Some(shortest) = (0..6).min_by(|&a, &b| ways[a].1.total_cmp(&ways[b].1)) {
+        ways.swap(0, shortest);
+    }
+    ways.iter().all(|&(i, length)| {
+        let mut way = *aabb;
         // Twice as long, as rounding may leave out a face at the end.
-        let ray = BvhNode::leaf(Aabb::from_points([point, point + 2.0 * ray]), 0);
-        mesh.bvh().leaves(|node| node.intersects(&ray)).next().is_some()
+        match i / 3 {
+            0 => way.mins[i % 3] -= 2.0 * length,
+            _ => way.maxs[i % 3] += 2.0 * length,
+        }
+        let way = BvhNode::leaf(way, 0);
+        mesh.bvh().leaves(|node| node.intersects(&way)).next().is_some()
     })
 }
 
@@ -112,10 +129,6 @@ fn leaves(met: FeatureId, outward: f64) -> bool {
     (met == BACK) == (outward > 0.0)
 }
 
-/// Number of triangles near a ray from which [`ends_within`] returns false without a test. Higher: slow
-/// where many triangles are at one place. Lower: thin walls of fine meshes are pushed together.
-const CROWD: usize = 64;
-
 /// Greatest number of parts of a mesh that [`exit`] leaves one after another.
 const MOST_PARTS: usize = 8;
 
@@ -140,26 +153,22 @@ pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, outward: Option<f64>) -> Opt
     exits.take(MOST_PARTS).last()
 }
 
-/// Returns true if a solid ends within a length along a ray, which starts in one part of the solid. `outward` is the sign with
-/// which normals lead out. Returns false where a crowd of triangles is near the ray.
-pub(crate) fn ends_within(mesh: &TriMesh, ray: &Ray, length: Real, outward: f64) -> bool {
-    let segment = BvhNode::leaf(Aabb::from_points([ray.origin, ray.point_at(length)]), 0);
-    let near = mesh.bvh().leaves(|node| node.intersects(&segment)).take(CROWD);
-    let near: ArrayVec<u32, CROWD> = near.collect();
-    if near.is_full() {
-        return false;
-    }
-    let hits = near.into_iter().filter_map(|triangle| {
-        let hit = mesh.triangle(triangle).cast_local_ray_and_get_normal(ray, length, false)?;
-        Some((hit.time_of_impact, if leaves(hit.feature, outward) { -1 } else { 1 }))
-    });
-    let mut hits: ArrayVec<(Real, i32), CROWD> = hits.collect();
-    hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut parts = 1;
-    hits.into_iter().any(|(_, enters)| {
-        parts += enters;
-        parts <= 0
-    })
+/// Returns true if a solid ends within a length along a ray that starts in it, see [`ends_within`](sbbk_core::surface::ends_within).
+pub(crate) fn ends_within(
+    mesh: &TriMesh,
+    [start, direction]: [DVec3; 2],
+    length: f64,
+    outward: f64,
+) -> bool {
+    let ends = [start, start + length * direction].map(|end| end.as_vec3());
+    // The box has all points of the ray, as rounding to f32 is monotonic up to one step.
+    let segment = Aabb::from_points(ends)
+        .loosened(Real::EPSILON * ends[0].abs().max(ends[1].abs()).max_element());
+    let segment = BvhNode::leaf(segment, 0);
+    let near = mesh.bvh().leaves(|node| node.intersects(&segment));
+    let corners =
+        |triangle| mesh.triangle(triangle).vertices().map(|corner| corner.as_dvec3() - start);
+    surface::ends_within(near.map(corners), direction, length, outward)
 }
 
 /// True if a box is finite and not empty.
@@ -185,7 +194,6 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
 #[derive(Copy, Clone)]
 pub(crate) struct MeshView<'a> {
     pub(crate) mesh: &'a TriMesh,
-    pub(super) token: MeshToken,
     pub(crate) store: &'a MeshStore,
     root: Aabb,
 }
@@ -196,7 +204,7 @@ impl MeshStore {
     #[inline]
     pub(crate) fn view<'a>(&'a self, mesh: &'a TriMesh) -> Option<MeshView<'a>> {
         let root = mesh.bvh().root_aabb();
-        let view = || MeshView { mesh, token: MeshToken::of(mesh), store: self, root };
+        let view = || MeshView { mesh, store: self, root };
         is_valid(&root).then(view)
     }
 }

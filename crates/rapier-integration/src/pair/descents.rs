@@ -156,7 +156,7 @@ impl TriangleShapes<'_> {
         near: &mut Vec<u32>,
         DescentChunk { found, counts, .. }: &mut DescentChunk,
     ) {
-        let Moving { ball, placement } = self.moving();
+        let Moving { ball, placement, .. } = self.moving();
         let frame = FieldFrame::new(&field, placement, margin);
         let leaves = FieldLeaves::new(&frame, ball.centre, mesh.magnitude());
         near.clear();

@@ -107,7 +107,7 @@ impl<'a> HeldMesh<'a> {
         let slack = match room {
             Room::FacingOut => self.slack_in_room(middle, exit),
             _ if self.is_slab(middle, exit, -1.0) => None,
-            _ => Some(exit.distance(middle) - self.least_height()),
+            _ => Some(exit.distance(middle) - 0.5 * self.least_height()),
         };
         if let Some(slack) = slack.filter(|slack| *slack > 0.0) {
             *test = InsideTest::new(room, placement, slack);
@@ -128,8 +128,8 @@ impl<'a> HeldMesh<'a> {
             && f64::from(depth + height) >= SUNK * unit
             && !self.is_slab(middle, exit, 1.0)
             && !self.surface.is_declared_solid();
-        // No test above depends on more than this depth.
-        let enough = ((1.0 - STICKS_OUT) * ball.radius).max(self.least_height());
+        // No test above depends on more than this depth. At half the height of a room, the other half is beyond.
+        let enough = ((1.0 - STICKS_OUT) * ball.radius).max(0.5 * self.least_height());
         is_in_room.then_some(depth - enough)
     }
 

@@ -119,15 +119,24 @@ impl<'a> Pair for MeshPair<'a> {
     where
         Self: 'q;
 
-    fn open<'q>(
-        &'q self,
-        ([known1, known2], [in_room, inside]): &'q mut Self::State,
-    ) -> (Change, TriangleQuery<'q>) {
+    fn pose(&self) -> &PairPose {
+        self.pose
+    }
+
+    fn update(&self, ([known1, known2], tests): &mut Self::State) -> Change {
         let [shape1, shape2] = &self.shapes;
         let change = known1.update(shape1).max(known2.update(shape2));
         if change != Change::Unchanged {
-            (*in_room, *inside) = Default::default();
+            *tests = Default::default();
         }
+        change
+    }
+
+    fn open<'q>(
+        &'q self,
+        ([known1, known2], [in_room, inside]): &'q mut Self::State,
+    ) -> TriangleQuery<'q> {
+        let [shape1, shape2] = &self.shapes;
         let (shape1, tree1) = self.opened(shape1, known1);
         let (shape2, tree2) = self.opened(shape2, known2);
         let radius = shape1.ball().radius.min(shape2.ball().radius);
@@ -146,6 +155,6 @@ impl<'a> Pair for MeshPair<'a> {
         }
         let has_patches = self.config.has_patches() && self.are_rigid();
         let patches = has_patches.then(|| PatchPlan::new(self.pose.prediction, radius));
-        (change, TriangleQuery { shapes, patches, inside })
+        TriangleQuery { shapes, patches, inside }
     }
 }

@@ -20,6 +20,11 @@ impl PairPose {
         Self { pos12: *pos12, placement12, placement21: placement12.inverted(), prediction }
     }
 
+    /// Returns the placement of shape 1 (false) or 2 (true) in the frame of the other shape.
+    pub(super) fn placement_of(&self, is_second: bool) -> &Placement {
+        if is_second { &self.placement12 } else { &self.placement21 }
+    }
+
     /// Returns a point of shape 1 (0) or 2 (1) in the frame of the other shape.
     pub(super) fn in_other(&self, i: usize, point: Vector) -> Vector {
         [&self.placement21, &self.placement12][i].to_frame1(point, Vector::ZERO).as_vec3()

@@ -24,8 +24,13 @@ pub(crate) trait Pair: Copy {
     where
         Self: 'q;
 
-    /// Returns the change since the last query, and begins a query.
-    fn open<'q>(&'q self, state: &'q mut Self::State) -> (Change, Self::Query<'q>);
+    fn pose(&self) -> &PairPose;
+
+    /// Compares with the shapes of the last query, and stores those of this query.
+    fn update(&self, state: &mut Self::State) -> Change;
+
+    /// Begins a query. Call [`update`](Self::update) first.
+    fn open<'q>(&'q self, state: &'q mut Self::State) -> Self::Query<'q>;
 }
 
 /// A query of a pair. Passes over candidates and memory for them are private to the kind.
@@ -115,6 +120,8 @@ pub(crate) type ContactList<C> = Vec<([u32; 2], C)>;
 pub(crate) struct Moving<'a> {
     pub(super) ball: Sphere,
     pub(super) placement: &'a Placement,
+    /// True for shape 2.
+    pub(super) is_second: bool,
 }
 
 /// Distances of a query.

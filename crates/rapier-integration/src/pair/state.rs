@@ -12,9 +12,11 @@ use parry3d::query::details::{
     TypedWorkspaceData, VoxelsShapeContactManifoldsWorkspace, WorkspaceData,
 };
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
-use sbbk_core::traverse::Slack;
+use sbbk_core::traverse::{Placement, Slack};
+use sbbk_core::volumes::Sphere;
 
 use super::pose::PairPose;
+use super::query::Moving;
 use crate::mesh::Change;
 
 /// State of a pair: data `S` of its shapes, and candidates with hints `H`.
@@ -52,9 +54,21 @@ pub(super) struct CandidateMemory<H> {
     /// True if the manifolds of the last query are patches.
     pub(super) has_patches: Option<bool>,
     pub(super) slack: Slack,
+    calm: Option<Calm>,
     /// In the order of subshapes.
     pub(super) candidates: Vec<Candidate<H>>,
     demand: HighWaterMark,
+}
+
+/// A pair without contacts and candidates, which gets none while the moving body moves by less than `rest`.
+#[derive(Clone)]
+struct Calm {
+    placement: Placement,
+    ball: Sphere,
+    /// True if shape 2 is the moving body.
+    is_second: bool,
+    prediction: Real,
+    rest: f64,
 }
 
 impl<H> CandidateMemory<H> {
@@ -78,8 +92,34 @@ impl<H> CandidateMemory<H> {
         self.last == Some((pose.pos12, pose.prediction, manifold_count))
     }
 
+    /// Returns true if the last query found neither contacts nor candidates, and the pair has moved too little for any. Takes
+    /// note of the placement.
+    pub(super) fn is_calm(&mut self, pose: &PairPose) -> bool {
+        let Some(Calm { placement, ball, is_second, prediction, rest }) = &self.calm else {
+            return false;
+        };
+        let now = pose.placement_of(*is_second);
+        let motion = now.motion_bound(placement, ball.centre, ball.radius);
+        let is_calm = pose.prediction == *prediction && motion < *rest;
+        if is_calm {
+            self.slack.note_placement(now);
+        }
+        is_calm
+    }
+
+    /// Takes note of a query without contacts and candidates. Bodies that meet nothing get no contacts: none is pushed out of
+    /// a solid later.
+    pub(super) fn note_calm(&mut self, pose: &PairPose, moving: &Moving<'_>, reach: Real) {
+        let Moving { ball, placement, is_second } = *moving;
+        let rest = self.slack.rest(ball, placement, reach.max(pose.prediction));
+        let PairPose { prediction, .. } = *pose;
+        let calm = Calm { placement: *placement, ball, is_second, prediction, rest };
+        self.calm = (rest > 0.0).then_some(calm);
+    }
+
     /// Begins a query. Forgets the candidates if the last query was cut short by a panic.
     pub(super) fn begin(&mut self) {
+        self.calm = None;
         if self.last.take().is_none() {
             self.forget();
         }
@@ -95,7 +135,7 @@ impl<H> CandidateMemory<H> {
 
     /// Drops the candidates. The next query descends.
     pub(super) fn forget(&mut self) {
-        (self.last, self.slack) = (None, Slack::default());
+        (self.last, self.calm, self.slack) = (None, None, Slack::default());
         self.candidates.clear();
     }
 }

@@ -12,10 +12,8 @@
 //! Crossing surfaces never stay without a contact: an island without one gets the best there is
 //! ([`OverlapIslands`](super::islands::OverlapIslands)).
 
-use arrayvec::ArrayVec;
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
-use parry3d::query::Ray;
 use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleContact};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
@@ -166,24 +164,23 @@ impl<'a> SurfaceFilter<'a> {
         if is_solid != [true; 2] {
             return true;
         }
-        let length = ((1.0 - 2.0 * WITHIN) * contact.distance) as Real;
-        let goes_on = |i: &usize| !self.shapes[*i].ends_within(&self.way(*i, contact), length);
-        let on_ways: ArrayVec<usize, 2> = (0..2).filter(goes_on).collect();
-        on_ways.iter().any(|&i| self.leads_behind(i, contact))
-            || on_ways.iter().any(|&i| self.may_hold(i, contact, length))
+        let length = (1.0 - 2.0 * WITHIN) * contact.distance;
+        let ends = |i: usize| self.shapes[i].ends_within(self.way(i, contact), length);
+        (0..2).any(|i| !ends(i) && self.may_hold(i, contact, length))
     }
 
     /// Returns true if the other triangle of a contact has a point in a solid, or if that is in doubt. `length` is that of
     /// the way to the other triangle.
-    fn may_hold(&self, i: usize, contact: &TriangleContact, length: Real) -> bool {
-        let shape = &self.shapes[i];
+    fn may_hold(&self, i: usize, contact: &TriangleContact, length: f64) -> bool {
+        let [start, direction] = self.way(i, contact);
         // The point may be at a border of the solid though the triangle is in it.
         let beside = || {
             let [a, b, c] = self.local.corners[1 - i];
             let point = [contact.point2, contact.point1][i];
-            self.in_shape(i, point.lerp((a + b + c) / 3.0, WITHIN)).as_vec3()
+            self.in_shape(i, point.lerp((a + b + c) / 3.0, WITHIN))
         };
-        shape.may_hold(self.way(i, contact).point_at(length)) || shape.may_hold(beside())
+        let may_hold = |point: DVec3| self.shapes[i].may_hold(point.as_vec3());
+        may_hold(start + length * direction) || may_hold(beside())
     }
 
     /// Returns true if both points of a contact are local minima of the distance.
@@ -363,12 +360,11 @@ impl<'a> SurfaceFilter<'a> {
         Some(TriangleContact { normal, distance, point1, point2, ..*contact })
     }
 
-    /// Returns the ray from the point of a contact on a shape to the other point, in the frame of the shape. It begins off the
-    /// surface.
-    fn way(&self, i: usize, contact: &TriangleContact) -> Ray {
+    /// Returns the start and the direction of the ray from the point of a contact on a shape to the other point, in the frame of
+    /// the shape. It begins off the surface.
+    fn way(&self, i: usize, contact: &TriangleContact) -> [DVec3; 2] {
         let way = self.direction(i, contact);
-        let start = self.place(i, contact) + WITHIN * contact.distance * way;
-        Ray::new(start.as_vec3(), way.as_vec3())
+        [self.place(i, contact) + WITHIN * contact.distance * way, way]
     }
 
     /// Returns the direction in which the normal of a contact leads away from its point on a shape, in the frame of the shape.
@@ -417,15 +413,6 @@ impl<'a> SurfaceFilter<'a> {
             surface.points_inside(self.pair[i], feature(contact, i), direction)
         };
         self.surfaces[i].as_ref().is_some_and(points_inside)
-    }
-
-    /// Returns true if the normal of a contact leads behind all triangles at its point on a shape.
-    fn leads_behind(&self, i: usize, contact: &TriangleContact) -> bool {
-        let direction = self.direction(i, contact);
-        let leads_behind = |surface: &Around<_>| {
-            surface.leads_behind(self.pair[i], feature(contact, i), direction)
-        };
-        self.surfaces[i].as_ref().is_some_and(leads_behind)
     }
 
     /// Returns true if a surface ends at a feature, seen along an axis.

@@ -194,7 +194,7 @@ impl TriangleShape<'_> {
 
     /// Returns true if a solid ends within a length along a ray that starts in it. The ground below a height field
     /// has no end.
-    pub(super) fn ends_within(&self, ray: &Ray, length: Real) -> bool {
+    pub(super) fn ends_within(&self, ray: [DVec3; 2], length: f64) -> bool {
         let Self::Mesh(mesh) = self else { return false };
         ends_within(mesh.view.mesh, ray, length, self.outward())
     }

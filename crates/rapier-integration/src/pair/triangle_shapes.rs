@@ -121,7 +121,8 @@ impl TriangleShapes<'_> {
     pub(super) fn moving(&self) -> Moving<'_> {
         let PairPose { placement12, placement21, .. } = self.pose;
         let smaller = 1 - self.larger;
-        Moving { ball: self[smaller].ball(), placement: [placement21, placement12][smaller] }
+        let placement = [placement21, placement12][smaller];
+        Moving { ball: self[smaller].ball(), placement, is_second: smaller == 1 }
     }
 
     /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one, if that is more than

@@ -2,7 +2,8 @@
 //!
 //! 1. The state of the pair comes from the host's workspace ([`state`](super::state)).
 //! 2. A change of the shapes since the last query drops what no longer holds.
-//! 3. An equal pose leaves the manifolds as they are.
+//! 3. An equal pose leaves the manifolds as they are. Shapes that were apart, and have moved by less than their distance,
+//!    have none.
 //! 4. If the candidates of the last descent no longer serve, a descent finds new ones. If there were none, the distance of
 //!    the shapes may tell for how long there will be none.
 //! 5. Candidates in reach become contacts ([`PairQuery::contacts`]).
@@ -20,7 +21,7 @@ use crate::mesh::MeshStore;
 
 /// Way in which a query was answered.
 pub(crate) enum QueryOutcome {
-    /// By Parry's hierarchy, and a box or a ball.
+    /// By the distance of the shapes: Parry's hierarchy and a box or a ball, or the motion since.
     Apart,
     /// By the manifolds of the last query.
     Unchanged,
@@ -49,11 +50,15 @@ where
     let new_pair = || store.counters.pairs.raise();
     let state: &mut PairState<P::State, P::Hint> = state_in(workspace, manifolds, new_pair);
     let PairState { shapes, memory } = state;
-    let (change, mut query) = pair.open(shapes);
-    memory.apply_change(change, manifolds);
-    if memory.is_unchanged(query.pose(), manifolds.len()) {
+    memory.apply_change(pair.update(shapes), manifolds);
+    let pose = pair.pose();
+    if memory.is_unchanged(pose, manifolds.len()) {
         return QueryOutcome::Unchanged;
     }
+    if manifolds.is_empty() && memory.is_calm(pose) {
+        return QueryOutcome::Apart;
+    }
+    let mut query = pair.open(shapes);
     memory.begin();
     let mut lent = P::Query::memory().take().unwrap_or_default();
     let outcome = update_contacts(&mut query, memory, counts, &mut lent);
@@ -70,7 +75,10 @@ where
         *lent = QueryMemory { demand: lent.demand, ..QueryMemory::default() };
     }
     P::Query::memory().set(Some(lent));
-    memory.end(query.pose(), manifolds.len());
+    memory.end(pose, manifolds.len());
+    if manifolds.is_empty() && memory.candidates.is_empty() {
+        memory.note_calm(pose, &query.moving(), query.reach());
+    }
     outcome
 }
 

@@ -7,6 +7,7 @@
 mod cones;
 mod facets;
 mod one_ring;
+mod rays;
 mod sides;
 mod slopes;
 mod spread;
@@ -17,7 +18,8 @@ mod twins;
 pub use cones::MinimumCones;
 pub use facets::Facets;
 pub use one_ring::Around;
-pub use sides::{RayTriangles, Side, SurfaceKind, kind, side, winding_sign};
+pub use rays::{RayTriangles, ends_within};
+pub use sides::{Side, SurfaceKind, kind, side, winding_sign};
 pub use slopes::PlaceMemo;
 pub use spread::minimum_cones;
 pub use twins::{Place, hangs, is_flat, place, sides};

@@ -186,24 +186,6 @@ impl<F: Facets> Around<F> {
         self.leads_in(triangle, feature, direction, &signs)
     }
 
-    /// True if a unit direction from a feature leads behind all triangles of a closed one-ring of a solid. Then the way begins in
-    /// the solid, since an arc of directions from outside would enter it through a triangle. False for [`LONG`] rings.
-    pub fn leads_behind(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
-        if !self.is_solid() || feature == Feature::Face {
-            return self.points_inside(triangle, feature, direction);
-        }
-        let mut count = 0;
-        self.visit(triangle, feature, |wedge| {
-            count += 1;
-            let is_behind = self.outward() * wedge.area().dot(direction) < 0.0;
-            if is_behind && count <= LONG {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        })
-    }
-
     /// Returns true if a direction leads into the solid, by its heights over the triangles of a one-ring.
     fn leads_in(&self, triangle: u32, feature: Feature, direction: DVec3, signs: &Signs) -> bool {
         signs.lead_in().unwrap_or_else(|| {

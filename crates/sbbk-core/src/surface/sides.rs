@@ -8,33 +8,14 @@
 //! Winding Numbers*, 2013. Their number is the mean over all rays.
 
 use std::cell::{Cell, OnceCell};
-use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use arrayvec::ArrayVec;
 use glamx::DVec3;
 
+use super::rays::{Hit, Hits, RayTriangles, TIE, direction, hit, sequence, shortest, winding};
 use super::slopes::PlaceMemo;
 use super::triangle::{area_vector, depth_within, longest_side, meeting};
 use super::twins::TriangleSet;
-
-/// Triangles that rays can meet.
-pub trait RayTriangles {
-    /// Number of triangles.
-    fn count(&self) -> u32;
-
-    /// The corners of a triangle.
-    fn corners(&self, triangle: u32) -> [DVec3; 3];
-
-    /// The least and the greatest coordinates.
-    fn bounds(&self) -> [DVec3; 2];
-
-    /// Calls `visit` with all triangles that may come within `slack` of a triangle, until it breaks.
-    fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
-
-    /// Calls `visit` with all triangles that the ray from `start` may meet, until it breaks.
-    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
-}
 
 /// The kind of surface that a mesh forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -92,10 +73,6 @@ const SURE: f64 = 3.0;
 /// Number of triangles that decide which way the normals of a closed surface point.
 const VOTES: u32 = 16;
 
-/// Triangles that a ray meets at most. A triangle whose rays meet more counts as a face. Higher: meshes
-/// of many layers take longer. Lower: walls within such meshes have contacts.
-const MOST_HITS: usize = 100;
-
 /// A choice of the rays of a triangle.
 #[derive(Clone, Copy)]
 struct Choice {
@@ -135,9 +112,6 @@ const SHIFT: u32 = 17;
 /// Number of triangles after which rays repeat. It is prime, so that no row of a regular mesh has the same
 /// rays as the next.
 const SHIFTS: u32 = 1009;
-
-/// Share of a length below which two places of a ray are one.
-const TIE: f64 = 1.0e-9;
 
 /// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more.
 pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
@@ -221,12 +195,13 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         if is_face { Side::Outer } else { side }
     }
 
-    /// Returns the sign of the winding number around a point, if two rays agree. Many layers count as a body.
+    /// Returns the sign of the winding number around a point, if two rays agree. Many layers count as a body. A ray that only
+    /// meets closed components, within triangles, cannot be wrong.
     pub(super) fn winding_sign(&self, point: DVec3) -> Option<i32> {
         let rays = Rays::from_point(self, point)?;
         let sign = |i| rays.winding(i, |other| self.counts(other)).map_or(1, i32::signum);
-        let [one, other] = [0, 1].map(sign);
-        (one == other).then_some(one)
+        let one = sign(0);
+        (rays.is_exact.get() || one == sign(1)).then_some(one)
     }
 
     /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
@@ -369,49 +344,9 @@ pub(super) fn of_samples(mesh: &RayMesh<impl RayTriangles>, is_closed: bool) -> 
     }
 }
 
-/// Number `i` of a sequence of low discrepancy in one of three dimensions.
-fn sequence(i: f64, dimension: usize) -> f64 {
-    // Powers of the root of x⁴ = x + 1.
-    const STEPS: [f64; 3] =
-        [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_9];
-    (0.5 + i * STEPS[dimension]).fract()
-}
-
 fn middle([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*a + *b + *c) / 3.0
 }
-
-/// Direction `i` of a sequence, whose third coordinate is at least `least`.
-fn direction(i: f64, least: f64) -> [f64; 3] {
-    let [u, v] = [1, 2].map(|dimension| sequence(i, dimension));
-    let height = least + (1.0 - least) * v;
-    let (sin, cos) = (TAU * u).sin_cos();
-    let flat = (1.0 - height * height).max(0.0).sqrt();
-    [flat * cos, flat * sin, height]
-}
-
-/// Returns the direction whose line through a point has the shortest part within bounds.
-fn shortest(ways: impl Iterator<Item = DVec3>, start: DVec3, bounds: [DVec3; 2]) -> Option<DVec3> {
-    let [low, high] = bounds.map(|corner| corner - start);
-    let length = |way: DVec3| {
-        let [one, other] = [low, high].map(|corner| corner / way);
-        one.max(other).min_element() - one.min(other).max_element()
-    };
-    ways.min_by(|&a, &b| length(a).total_cmp(&length(b)))
-}
-
-/// A triangle that a ray meets.
-struct Hit {
-    length: f64,
-    /// 1 if the ray leaves through the front, -1 if it enters.
-    sign: i32,
-    triangle: u32,
-    /// True within a triangle of a closed component. Rays count all such hits, also where faces are flush.
-    is_exact: bool,
-}
-
-/// Hits of a ray.
-type Hits = ArrayVec<Hit, MOST_HITS>;
 
 /// A ray to the front of a triangle and one to the back.
 struct Rays<'a, T> {
@@ -422,6 +357,8 @@ struct Rays<'a, T> {
     skipped: f64,
     /// Hits of both rays, the nearest first; `None` for [too many](MOST_HITS).
     hits: [OnceCell<Option<Hits>>; 2],
+    /// True if rounding decides about no hit of the rays so far.
+    is_exact: Cell<bool>,
 }
 
 impl<'a, T: RayTriangles> Rays<'a, T> {
@@ -443,7 +380,8 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         });
         let to_front = shortest(ways, start, mesh.triangles.bounds())?;
         let skipped = OFFSET * longest_side(&corners) / up.dot(to_front);
-        Some(Self { mesh, start, to_front, skipped, hits: Default::default() })
+        let (hits, is_exact) = (Default::default(), Cell::new(true));
+        Some(Self { mesh, start, to_front, skipped, hits, is_exact })
     }
 
     /// Two opposite rays from a point; `None` for a point that is not finite.
@@ -456,6 +394,7 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
             to_front,
             skipped: 0.0,
             hits: Default::default(),
+            is_exact: Cell::new(true),
         })
     }
 
@@ -507,42 +446,24 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         self.mesh.triangles.along(self.start, direction, &mut |triangle| {
             work += 1;
             let corners = self.mesh.triangles.corners(triangle).map(|corner| corner - self.start);
-            let hit = hit(&corners, direction).filter(|(length, ..)| *length > self.skipped);
-            let Some((length, sign, is_at_border)) = hit else { return ControlFlow::Continue(()) };
+            let Some((length, sign, is_at_border)) = hit(&corners, direction) else {
+                return ControlFlow::Continue(());
+            };
             let is_exact = !is_at_border && self.mesh.is_of_closed(triangle);
+            if !is_exact {
+                self.is_exact.set(false);
+            }
+            if length <= self.skipped {
+                return ControlFlow::Continue(());
+            }
             is_full = hits.try_push(Hit { length, sign, triangle, is_exact }).is_err();
             if is_full { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
+        if is_full {
+            self.is_exact.set(false);
+        }
         self.mesh.work.set(self.mesh.work.get() + work);
         hits.sort_unstable_by(|a, b| a.length.total_cmp(&b.length));
         (!is_full).then_some(hits)
     }
-}
-
-/// Times that a ray leaves the surface less times that it enters. Triangles at one place count once unless the hits are
-/// exact: doubles, and the two at an edge.
-fn winding<'a>(hits: impl Iterator<Item = &'a Hit>) -> i32 {
-    let mut sum = 0;
-    let mut last = [(f64::NEG_INFINITY, false); 2];
-    for &Hit { length, sign, is_exact, .. } in hits {
-        let last = &mut last[usize::from(sign > 0)];
-        if length - last.0 > TIE * length || is_exact && last.1 {
-            sum += sign;
-        }
-        *last = (length, is_exact);
-    }
-    sum
-}
-
-/// Length at which a ray from the origin meets a triangle, 1 if it leaves through the front, and true if it meets the border.
-fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i32, bool)> {
-    let normal = area_vector(corners);
-    let along = normal.dot(direction);
-    let length = normal.dot(*a) / along;
-    // Six times the volume between the ray and a side.
-    let volume = |(p, q): (&DVec3, &DVec3)| p.cross(*q).dot(direction) * along.signum();
-    let least = [(a, b), (b, c), (c, a)].map(volume).into_iter().fold(f64::INFINITY, f64::min);
-    let slack = TIE * along.abs();
-    let is_met = length > 0.0 && least >= -slack;
-    (is_met && along != 0.0).then_some((length, along.signum() as i32, least <= slack))
 }

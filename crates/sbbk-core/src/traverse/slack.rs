@@ -110,6 +110,19 @@ impl Slack {
         self.descent = self.last.map(|placement| (placement, margin));
     }
 
+    /// Returns the motion since the last query for which the candidates of the last descent still serve; 0 without any.
+    pub fn rest(&self, ball: Sphere, placement: &Placement, reach: f32) -> f64 {
+        self.descent.map_or(0.0, |(then, margin)| {
+            let motion = placement.motion_bound(&then, ball.centre, ball.radius);
+            f64::from(margin) - f64::from(reach) - motion
+        })
+    }
+
+    /// Takes note of the placement of a query that needs no plan.
+    pub fn note_placement(&mut self, placement: &Placement) {
+        self.last = Some(*placement);
+    }
+
     /// Length of the path of points since the last descent, an upper bound: distances have shrunk
     /// by at most this much between any two queries since.
     pub fn travel(&self) -> f64 {

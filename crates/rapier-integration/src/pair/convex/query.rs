@@ -34,18 +34,20 @@ impl<'a> Pair for ConvexPair<'a> {
     where
         Self: 'q;
 
-    fn open<'q>(
-        &'q self,
-        (known_mesh, part_data): &'q mut Self::State,
-    ) -> (Change, Self::Query<'q>) {
-        let mut change = known_mesh.update(&self.mesh);
-        if part_data.update(&self.parts) {
-            change = Change::Replaced;
-        }
+    fn pose(&self) -> &PairPose {
+        self.pose
+    }
+
+    fn update(&self, (known_mesh, part_data): &mut Self::State) -> Change {
+        let change = known_mesh.update(&self.mesh);
+        if part_data.update(&self.parts) { Change::Replaced } else { change }
+    }
+
+    fn open<'q>(&'q self, (known_mesh, part_data): &'q mut Self::State) -> Self::Query<'q> {
         // A ball has one point, and rolls over walls within a mesh.
         let needs_surface = self.config.leave_solids() || self.has_surface() && !self.is_ball();
         let surface = needs_surface.then(|| known_mesh.acquire(&self.mesh, false)).flatten();
-        (change, ConvexQuery { pair: self, part_data, surface })
+        ConvexQuery { pair: self, part_data, surface }
     }
 }
 
@@ -141,11 +143,12 @@ impl PairQuery for ConvexQuery<'_> {
     fn moving(&self) -> Moving<'_> {
         let [to_parts, to_mesh] = self.pair.mesh_place.placements(self.pair.pose);
         let (mesh, parts) = (self.pair.mesh.ball(), self.part_data.ball);
+        let is_second = self.pair.mesh_place.is_second();
         // The smaller body moves less when it rotates.
         if mesh.radius <= parts.radius {
-            Moving { ball: mesh, placement: to_parts }
+            Moving { ball: mesh, placement: to_parts, is_second }
         } else {
-            Moving { ball: parts, placement: to_mesh }
+            Moving { ball: parts, placement: to_mesh, is_second: !is_second }
         }
     }
 

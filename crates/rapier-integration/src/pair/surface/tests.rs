@@ -36,7 +36,8 @@ fn triangles_beside_each_other_pass_by() {
             let registered = has_trees
                 .then(|| [0, 1].map(|i| store.register(meshes[i], Some(&shapes[i])).unwrap()));
             let mut known = Default::default();
-            let shapes = mesh_pair.open(&mut known).1.shapes;
+            mesh_pair.update(&mut known);
+            let shapes = mesh_pair.open(&mut known).shapes;
             let mut found = Vec::new();
             let scratch = &mut DescentMemory::default();
             let tests = &mut DescentCounts::default();
