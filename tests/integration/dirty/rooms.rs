@@ -164,6 +164,32 @@ fn fast_bodies_stay_in_rooms_that_face_inwards() {
     }
 }
 
+/// Bodies fall in low halls whose faces lead inwards. Would catch halls that count as flat solids, so all bodies fell through the floor.
+#[test]
+fn bodies_stay_in_low_halls_that_face_inwards() {
+    for (width, cells, flags) in
+        [31.0, 100.0].into_iter().flat_map(|w| [1, 20].map(|c| (w, c, FLAGS[c as usize % 2])))
+    {
+        let hall = mesh::cuboid(0.5 * Vec3::new(width, 3.0, width), cells);
+        let hall = mesh::turned_inside_out(hall).shape_with(flags);
+        let mut world = world(ColliderBuilder::new(hall));
+        let mut random = Rand32::new(5);
+        for i in 0..40 {
+            let mut within = |most: f32| most * (2.0 * random.rand_float() - 1.0);
+            let half = 0.4 + within(0.25);
+            let place = Vec3::new(within(0.3 * width), 0.2 + within(0.4), within(0.3 * width));
+            let body =
+                if i % 2 == 0 { mesh::cuboid(Vec3::splat(half), 1) } else { mesh::ball(half, 8) };
+            let pose = Pose3::from_parts(place, rotation(&mut random));
+            let body_of = RigidBodyBuilder::dynamic().pose(pose).linvel(-4.0 * Vec3::Y);
+            world.insert(body_of, ColliderBuilder::new(body.shape_with(flags)));
+        }
+        (0..180).for_each(|_| world.step());
+        let lost = world.bodies.iter().filter(|(_, body)| body.translation().y < -1.5).count();
+        assert_eq!(lost, 0, "of 40 bodies in a hall of {width} of {cells} cells");
+    }
+}
+
 /// Rooms whose floor has a cell that is wound the other way. Would catch bodies that count as outside, as the nearest triangle
 /// faces them.
 #[test]

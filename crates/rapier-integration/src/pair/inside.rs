@@ -106,8 +106,7 @@ impl<'a> HeldMesh<'a> {
         let Some((exit, room)) = self.exit(middle, test) else { return Room::No };
         let slack = match room {
             Room::FacingOut => self.slack_in_room(middle, exit),
-            _ if self.is_slab(middle, exit, -1.0) => None,
-            _ => Some(exit.distance(middle) - 0.5 * self.least_height()),
+            _ => self.slack_in_inward_room(middle, exit),
         };
         if let Some(slack) = slack.filter(|slack| *slack > 0.0) {
             *test = InsideTest::new(room, placement, slack);
@@ -119,18 +118,35 @@ impl<'a> HeldMesh<'a> {
     /// sticks out of a room. A long tube is a room although its ends are open. Flat solids are no rooms, nor are solids that thin
     /// bodies have just sunk in.
     fn slack_in_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
-        let (held, ball) = (self.held, self.held.ball());
         let depth = exit.distance(middle);
-        let way = self.pose.in_other(self.outer, exit) - ball.centre;
-        let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
-        let unit = filter_unit(self.pose, filter_distance(true, ball.radius));
+        let height = self.held.height(self.way_to(exit), depth / (1.0 - STICKS_OUT));
+        let unit = filter_unit(self.pose, filter_distance(true, self.held.ball().radius));
         let is_in_room = depth >= (1.0 - STICKS_OUT) * height
             && f64::from(depth + height) >= SUNK * unit
-            && !self.is_slab(middle, exit, 1.0)
+            && !self.is_lower(self.least_height(), middle, exit, 1.0)
             && !self.surface.is_declared_solid();
         // No test above depends on more than this depth. At half the height of a room, the other half is beyond.
-        let enough = ((1.0 - STICKS_OUT) * ball.radius).max(0.5 * self.least_height());
+        let radius = self.held.ball().radius;
+        let enough = ((1.0 - STICKS_OUT) * radius).max(0.5 * self.least_height());
         is_in_room.then_some(depth - enough)
+    }
+
+    /// Returns a motion for which a mesh whose faces lead in stays a room. `None` if the mesh is no room. A low hall is a room for
+    /// what it has space for. Thin bodies have just sunk in a flat solid that is inside out.
+    fn slack_in_inward_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
+        let depth = exit.distance(middle);
+        let height = self.held.height(self.way_to(exit), Real::INFINITY);
+        let is_room = !self.is_lower(self.least_height(), middle, exit, -1.0)
+            || depth + height >= self.pose.prediction
+                && !self.is_lower(2.0 * height, middle, exit, -1.0);
+        // At either depth, all is as deep beyond.
+        let enough = self.held.ball().radius.min(0.5 * self.least_height());
+        is_room.then_some(depth - enough)
+    }
+
+    /// Returns the direction from the middle of the held mesh to a point of the holder, in the frame of the held mesh.
+    fn way_to(&self, point: Vector) -> Vector {
+        (self.pose.in_other(self.outer, point) - self.held.ball().centre).normalize_or_zero()
     }
 
     /// Returns the placement of the held mesh in the frame of the holder.
@@ -148,10 +164,10 @@ impl<'a> HeldMesh<'a> {
         self.pose.in_other(1 - self.outer, point)
     }
 
-    /// Returns true if the larger mesh is too flat for a room where `point` is in it. `exit` is the nearest point of the surface.
+    /// Returns true if the larger mesh is lower than a height where `point` is in it. `exit` is the nearest point of the surface.
     /// `outward` is the sign with which normals lead out of the mesh.
-    fn is_slab(&self, point: Vector, exit: Vector, outward: f64) -> bool {
-        let most = self.least_height() - exit.distance(point);
+    fn is_lower(&self, height: Real, point: Vector, exit: Vector, outward: f64) -> bool {
+        let most = height - exit.distance(point);
         let ray = Ray::new(point, (point - exit).normalize_or_zero());
         self::exit(self.holder.mesh, &ray, Some(outward)).is_some_and(|(length, _)| length < most)
     }
