@@ -8,14 +8,17 @@
 //! of the larger shape; without any, they keep all contacts.
 
 use glamx::{DVec3, Vec3};
+use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::Real;
+use parry3d::query::Ray;
 use sbbk_core::contact::{Feature, FeaturePair, ManifoldPoints, TriangleContact, contact};
 
 use super::islands::OverlapIslands;
 use super::query::ContactList;
 use super::surface::{SurfaceFilter, Verdict};
 use super::triangle_contacts::in_local;
-use super::triangle_shapes::{TriangleHit, TriangleShapes, TriangleSurfaceContact};
+use super::triangle_shape::TriangleShape;
+use super::triangle_shapes::{NEAR_NORMAL, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
@@ -24,6 +27,9 @@ const STEPS: usize = 8;
 /// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher: thin plates with
 /// soft CCD turn through sheets. Lower: small bodies are stopped by triangles ahead.
 const SAME_DIRECTION: f64 = 0.97;
+
+/// Triangles of each mesh from which rays look ahead. Higher: more time. Lower: small parts of fine meshes are met late.
+const AHEAD: usize = 128;
 
 /// Least cosine of directions that are one. Higher: more time.
 const ONE_DIRECTION: f64 = 0.99;
@@ -128,6 +134,45 @@ impl TriangleShapes<'_> {
                 ends.filter(|end| distance(end) <= f64::from(within)).for_each(&mut found);
             }
         }
+        self.find_ahead(&mut found);
+    }
+
+    /// Calls `found` with the contacts of triangles and what lies straight in front of them, for some triangles spread over each
+    /// mesh. Sides that touch may hide them from walks.
+    fn find_ahead(&self, found: &mut impl FnMut(TriangleHit)) {
+        for i in 0..2 {
+            let TriangleShape::Mesh(mesh) = &self[i] else { continue };
+            let count = mesh.view.mesh.indices().len();
+            for k in 0..AHEAD.min(count) {
+                let triangle = (k * count / AHEAD.min(count)) as u32;
+                for sign in self[i].ways_out() {
+                    self.ahead(i, triangle, *sign).into_iter().for_each(&mut *found);
+                }
+            }
+        }
+    }
+
+    /// Returns the contact of a triangle and the first triangle of the other shape that a ray along its normal meets, if they face
+    /// each other.
+    fn ahead(&self, i: usize, triangle: u32, sign: Real) -> Option<TriangleHit> {
+        let within = self.pose.prediction;
+        let [a, b, c] = self[i].corners(triangle)?;
+        let start = self.pose.in_other(i, (a + b + c) / 3.0);
+        if !self[1 - i].bounds().loosened(within).contains_local_point(start) {
+            return None;
+        }
+        let rotation = self.pose.pos12.rotation;
+        let way = sign * (b - a).cross(c - a).normalize_or_zero();
+        let way = if i == 0 { rotation.inverse() * way } else { rotation * way };
+        let (met, distance, cosine) = self[1 - i].first_met(&Ray::new(start, way), within)?;
+        if f64::from(distance) <= f64::from(self.reach()) || cosine < NEAR_NORMAL as Real {
+            return None;
+        }
+        let mut pair = [met; 2];
+        pair[i] = triangle;
+        let local = self.local(pair)?;
+        let [t1, t2] = &local.corners;
+        Some((pair, TriangleSurfaceContact::of_triangles(contact(t1, t2, f64::from(within))?)))
     }
 
     /// Walks on from a contact. The first step starts at the point of shape `i`.

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
-use parry3d::query::Ray;
-use parry3d::shape::{Triangle, TrianglePseudoNormals};
+use parry3d::query::{Ray, RayCast};
+use parry3d::shape::{CompositeShapeRef, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{Around, Facets, MinimumCones, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::volumes::Sphere;
@@ -210,6 +210,31 @@ impl TriangleShape<'_> {
             }
             _ => self.nearest(point).is_none_or(|(_, behind)| behind >= 0.0),
         }
+    }
+
+    /// Returns the signs with which normals of triangles may lead out of the shape.
+    pub(super) fn ways_out(&self) -> &'static [Real] {
+        match (self.is_solid(), self.outward() > 0.0) {
+            (false, _) => &[1.0, -1.0],
+            (true, true) => &[1.0],
+            (true, false) => &[-1.0],
+        }
+    }
+
+    /// Returns the first triangle that a ray meets within a length, the length, and the cosine of the angle with the normal.
+    pub(super) fn first_met(&self, ray: &Ray, within: Real) -> Option<(u32, Real, Real)> {
+        let (triangle, hit) = match self {
+            Self::Mesh(mesh) => {
+                let shape = CompositeShapeRef(mesh.view.mesh);
+                shape.cast_local_ray_and_get_normal(ray, within, false)?
+            }
+            Self::Field(FieldShape { field, .. }) => {
+                let hit = field.0.cast_local_ray_and_get_normal(ray, within, false)?;
+                let place = ray.point_at(hit.time_of_impact);
+                (field.nearest_triangle(place, within)?, hit)
+            }
+        };
+        Some((triangle, hit.time_of_impact, -hit.normal.dot(ray.dir)))
     }
 
     /// Returns the nearest triangle to a point, if that is within a distance. The triangle of a height field may be
