@@ -34,6 +34,8 @@ mod dirty;
 mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.
 mod exact;
+/// Contacts of fine meshes that are not near.
+mod far;
 /// Time that grows with the triangles.
 mod growth;
 /// Meshes against height fields.

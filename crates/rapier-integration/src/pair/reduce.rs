@@ -34,10 +34,14 @@ const HOVER: Real = 0.1;
 /// they meet; lower: small bodies keep contacts at internal edges.
 pub(super) const FILTERED: Real = 0.1;
 
-/// [`PatchPlan::equal_depth`] as a share of the prediction distance, or of [`PatchPlan::far`] if that is less.
-/// Higher: points that hover replace points that carry, and bodies rock; lower: thin plates turn
-/// through what they hit.
+/// [`PatchPlan::equal_depth`] as a share of the prediction distance. Higher: points that hover replace points that carry, and
+/// bodies rock; lower: thin plates turn through what they hit.
 const EQUAL_DEPTH: Real = 0.02;
+
+/// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a step, so
+/// [`PatchPlan::equal_depth`] grows with the square of their ratio. Higher: cones on uneven ground stay awake. Lower: coins stand on
+/// one arc of the rim, and turn through floors.
+const SMALL: Real = 20.0;
 
 /// Share of the depth of the deepest point that counts like [`PatchPlan::equal_depth`] where points are chosen. Higher: points
 /// that hover replace points that carry. Lower: thin discs stand on one arc of the rim, and turn through floors.
@@ -80,15 +84,21 @@ impl PatchPlan {
         one_normal: -1.0,
     };
 
+    /// Plan for a mesh and a convex shape, which may have a round rim.
+    pub(super) fn of_convex(prediction: Real, radius: Real) -> Self {
+        let plan = Self::new(prediction, radius);
+        let small = (SMALL * prediction / radius).max(1.0);
+        Self { equal_depth: small * small * plan.equal_depth, ..plan }
+    }
+
     /// Plan for two shapes, from the radius of the smaller one.
     pub(super) fn new(prediction: Real, radius: Real) -> Self {
         let far = FILTERED * radius;
-        let unit = if prediction > 0.0 { prediction.min(far) } else { far };
         let hover_distance = if prediction < far { HOVER * prediction } else { Real::INFINITY };
         Self {
             far,
             hover_distance,
-            equal_depth: EQUAL_DEPTH * unit,
+            equal_depth: EQUAL_DEPTH * if prediction > 0.0 { prediction } else { far },
             size: PATCH_SIZE * radius,
             one_normal: ONE_NORMAL,
         }

@@ -236,7 +236,7 @@ impl PairQuery for ConvexQuery<'_> {
         let is_reduced = self.pair.mesh.is_rigid() && !self.pair.is_ball();
         (is_reduced && self.pair.config.has_patches()).then(|| {
             let radius = self.part_data.patch_radius(&self.pair.parts);
-            PatchPlan::new(self.pose().prediction, radius.min(self.pair.mesh.ball().radius))
+            PatchPlan::of_convex(self.pose().prediction, radius.min(self.pair.mesh.ball().radius))
         })
     }
 

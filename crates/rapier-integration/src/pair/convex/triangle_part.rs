@@ -165,7 +165,7 @@ impl TrianglePartPair<'_> {
             out.points.push(TrackedContact::new(point1, point2, fid1, fid2, distance));
         };
         let radius = placed.extent.ball().radius;
-        let PatchPlan { equal_depth, .. } = PatchPlan::new(self.pair.pose.prediction, radius);
+        let PatchPlan { equal_depth, .. } = PatchPlan::of_convex(self.pair.pose.prediction, radius);
         contact_points(corners, *shape, contact, turned, equal_depth.into(), push);
         out.normals = normals;
     }
