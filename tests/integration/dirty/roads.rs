@@ -1,3 +1,5 @@
+use std::f32::consts::FRAC_PI_2;
+
 use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
@@ -8,6 +10,7 @@ use sbbk_testkit::mesh::{self, Mesh};
 
 use super::rides::{Course, riders};
 use super::table::{Case, judge};
+use crate::worlds::after;
 
 /// Side of all chunks, or beams, of a road together.
 const SIZE: f32 = 16.0;
@@ -67,6 +70,43 @@ fn balls_roll_over_a_seam_as_over_a_floor() {
     }
 }
 
+/// Tiles of one unit, each a mesh of two triangles. Would catch borders that are met ahead of what rolls: the surface of a wheel comes
+/// down there, and the wheel hopped. Rods also turned, as they were met at one point.
+#[test]
+fn what_rolls_over_tiles_keeps_its_speed() {
+    let tiles =
+        (-1..12).map(|i| mesh::floor(1.0, 1).mapped(|v| Vec3::new(v.x + i as f32, 0.0, 6.0 * v.z)));
+    let tiles: Vec<_> = tiles.map(|tile| ColliderBuilder::new(tile.shape())).collect();
+    let block = vec![ColliderBuilder::cuboid(40.0, 1.0, 40.0).translation(-Vec3::Y)];
+    for radius in [0.1, 0.4] {
+        let lying = Vec3::X * FRAC_PI_2;
+        let rollers = [
+            ("ball", ColliderBuilder::ball(radius)),
+            ("capsule", ColliderBuilder::capsule_y(2.0 * radius, radius)),
+            ("cylinder", ColliderBuilder::cylinder(radius, radius)),
+        ];
+        for ((name, roller), speed) in
+            rollers.iter().flat_map(|roller| [1.0, 3.0, 8.0].map(|speed| (roller, speed)))
+        {
+            let [on_tiles, on_block] = [&tiles, &block].map(|floor| {
+                let mut world = PhysicsWorld::new();
+                world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+                for part in floor {
+                    world.insert(RigidBodyBuilder::fixed(), part.clone());
+                }
+                let place = Vec3::new(0.1, radius + 0.001, 0.1);
+                let body = RigidBodyBuilder::dynamic().translation(place).rotation(lying);
+                let body = body.linvel(speed * Vec3::X).angvel(-speed / radius * Vec3::Z);
+                let end = after((540.0 / speed) as usize, world, body, roller.clone());
+                end.linvel().x / speed
+            });
+            // A short cylinder gains speed on a block, as it turns.
+            let is_right = (on_tiles - on_block.min(1.0)).abs() < 0.03;
+            assert!(is_right, "{name} of {radius} at {speed}: {on_tiles}, {on_block} on a block");
+        }
+    }
+}
+
 /// Chunks and bodies that fail today.
 const KNOWN: &[(&str, &str)] =
     &[("16 slabs", "mesh cube, mesh ball, cuboid, ball, capsule, cylinder, hull")];
@@ -87,7 +127,8 @@ fn bodies_leave_the_rim_of_a_sheet_as_that_of_a_cuboid() {
                 row: format!("{speed} m/s"),
                 column: rider.name,
                 shown,
-                is_right: apart < 1.0,
+                // A rod that rolls slowly turns over the rim a tenth of a second later.
+                is_right: apart < if speed < 1.0 { 1.5 } else { 1.0 },
             });
         }
     }

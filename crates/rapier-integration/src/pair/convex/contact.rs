@@ -34,6 +34,8 @@ pub(crate) enum NormalSource {
     /// Another triangle, for a ghost contact. Distance and point on the shape belong to the support point
     /// of the shape.
     Neighbour,
+    /// The face of the triangle, for a contact at a border.
+    Border,
     /// The push-out from a solid: one point, in line with the middle of the shape.
     PushOut,
 }

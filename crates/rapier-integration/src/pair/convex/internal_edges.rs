@@ -9,7 +9,7 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::SurfaceKind;
 use sbbk_core::surface::strays::{self, touches};
 
-use super::contact::PartContact;
+use super::contact::{NormalSource, PartContact};
 use super::ghosts::{GhostContacts, corner_key};
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::box_between;
@@ -133,7 +133,8 @@ impl ConvexQuery<'_> {
         ));
         if lead_one_way(upright.iter().map(|(_, contact)| contact.normal)) {
             for &(border, contact) in &*upright {
-                contacts[border as usize].1.contact = contact;
+                let hit = &mut contacts[border as usize].1;
+                *hit = PartContact { contact, source: NormalSource::Border, ..*hit };
             }
         }
     }

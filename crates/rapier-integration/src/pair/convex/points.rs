@@ -46,8 +46,21 @@ pub(super) fn contact_points(
     let is_neighbours = contact.source == NormalSource::Neighbour;
     let is_own = !is_neighbours && normal.is_none();
     let normal = normal.unwrap_or(contact.contact.normal);
-    let (feature, has_rim) = facing_feature(shape, -normal.as_vec3(), on_shape.as_vec3());
+    let facing = match shape {
+        // The nearest point of a round side is ahead of the lowest one.
+        ConvexShape::Features { map, .. } if contact.source == NormalSource::Border => {
+            map.local_support_point(-normal.as_vec3())
+        }
+        _ => on_shape.as_vec3(),
+    };
+    let (feature, has_rim) = facing_feature(shape, -normal.as_vec3(), facing);
     let polygon = &feature.vertices.map(|corner| corner.as_dvec3())[..feature.num_vertices];
+    if let (NormalSource::Border, Feature::Edge(i), [p, q]) =
+        (contact.source, contact.feature, polygon)
+    {
+        let edge = [corners[usize::from(i)], corners[usize::from(i + 1) % 3]];
+        return border_points(edge, [*p, *q], &contact.contact, normal, found);
+    }
     let mut points = FeaturePoints::new();
     clip_feature(corners, polygon, normal, &mut points);
     // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces. Points nearer
@@ -74,6 +87,41 @@ pub(super) fn contact_points(
         found(closest);
     } else if is_neighbours && !is_cuboid {
         on_face(corners, on_shape, normal).into_iter().for_each(found);
+    }
+}
+
+/// Share of the distance from a border to the nearest point of an edge that its other points may be farther. Higher: rods that stick
+/// out over a cliff are held up. Lower: rods that roll over a border turn.
+const ALONG_BORDER: f64 = 0.1;
+
+/// Calls `found` with the ends of the part of a shape's edge that is along a border. The nearest points alone would turn a rod that
+/// rolls from mesh to mesh. `normal` is that of the face at the border.
+fn border_points(
+    [a, b]: [DVec3; 2],
+    [p, q]: [DVec3; 2],
+    &ConvexContact { distance, on_triangle, .. }: &ConvexContact,
+    normal: DVec3,
+    mut found: impl FnMut(PointPair),
+) {
+    let (border, way) = (b - a, q - p);
+    let at = |share: f64| p + share * way;
+    let share_of = |point: DVec3| ((point - p).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+    let foot = |point: DVec3| {
+        let share = (point - a).dot(border) / border.length_squared();
+        a + share.clamp(0.0, 1.0) * border
+    };
+    let middle = share_of(on_triangle);
+    let from_border = |share: f64| (at(share) - foot(at(share))).length();
+    let least = from_border(middle);
+    for (name, end) in [(1, share_of(a)), (2, share_of(b))] {
+        let excess = from_border(end) - least;
+        let part = if excess > 0.0 { (ALONG_BORDER * least / excess).min(1.0) } else { 1.0 };
+        let end = middle + part * (end - middle);
+        let on_shape = at(end);
+        let distance = distance + normal.dot(on_shape - at(middle));
+        let on_triangle = on_shape - distance * normal;
+        let features = [PackedFeatureId::UNKNOWN, PackedFeatureId(name)];
+        found(PointPair { on_triangle, on_shape, distance, features });
     }
 }
 

@@ -18,8 +18,6 @@ use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::ContactSummary;
 use crate::pair::reduce::PatchPlan;
-use crate::pair::surface::LIP;
-use crate::pair::triangle_shapes::{filter_distance, filter_unit};
 
 /// Least cosine between the normals of a contact and of a face whose normal it takes. Higher: shapes deep in a mesh stumble
 /// over internal edges. Lower: shapes half within a wall are pushed through it.
@@ -56,6 +54,10 @@ const UPRIGHT: f64 = 1.0e-3;
 /// Sine of a corner's direction up to which the corner counts as level. Higher: ghosts stay;
 /// lower: rounding of the normals of curved shapes counts.
 const LEVEL: f64 = 2.0e-3;
+
+/// Depth, in prediction distances, up to which a part counts as above the face at a border. Higher: rims do not carry what
+/// overhangs them. Lower: fast bodies stumble where meshes meet.
+const LIP: f64 = 0.5;
 
 /// Barycentric coordinate from which a point counts as within a triangle. Higher: rounding hides walls from what stands at
 /// their feet. Lower: walls have contacts above them.
@@ -283,22 +285,18 @@ impl TrianglePartPair<'_> {
     /// Returns a contact at a border with the normal of the face, if the part is on one side of the
     /// plane of the triangle.
     pub(super) fn upright_at_border(&self, contact: &ConvexContact) -> Option<ConvexContact> {
-        let ConvexContact { distance, normal: own, on_triangle, .. } = *contact;
+        let ConvexContact { distance, normal: own, on_shape, .. } = *contact;
         let face = self.face_contact(&self.placed.in_part(self.corners))?;
         let radius = f64::from(self.part.shape.radius());
-        let of_part = filter_distance(true, self.placed.extent.ball().radius);
-        if radius - face.distance > LIP * filter_unit(self.pair.pose, of_part) {
+        if radius - face.distance > LIP * f64::from(self.pair.pose.prediction) {
             return None;
         }
         let normal = face.normal;
         // The nearest point of the part is as far from the plane as it is along the normal.
         let distance = radius + (distance - radius) * normal.dot(own).max(0.0);
-        Some(ConvexContact {
-            distance,
-            normal,
-            on_triangle,
-            on_shape: on_triangle + distance * normal,
-        })
+        // Under the part: a part that rolls would seem to come down on a point ahead.
+        let on_triangle = on_shape - distance * normal;
+        Some(ConvexContact { distance, normal, on_triangle, on_shape })
     }
 
     /// Returns the contact of a wall with its own normal, if the part stands at its foot. `floor` is the contact of the
