@@ -8,8 +8,8 @@ use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
-/// A cradle of fine triangles rises under a bar of fine triangles. Its sides touch the bar first. Would catch a bottom without contacts:
-/// Rapier keeps those of the sides for five centimetres, and the bar passed through the bottom.
+/// A cradle of fine triangles rises under a bar of fine triangles. Its sides touch the bar first. Would catch a bottom without contacts.
+/// Rapier keeps contacts of the sides for five centimetres, so the bar passed through the bottom.
 #[test]
 fn a_cradle_that_touches_a_bar_at_its_sides_lifts_the_bar() {
     const WIDTH: Real = 0.02;

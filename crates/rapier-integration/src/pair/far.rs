@@ -152,8 +152,7 @@ impl TriangleShapes<'_> {
         }
     }
 
-    /// Returns the contact of a triangle and the first triangle of the other shape that a ray along its normal meets, if they face
-    /// each other.
+    /// Returns the contact of a triangle and of the triangle that a ray along its normal meets first, if both face each other.
     fn ahead(&self, i: usize, triangle: u32, sign: Real) -> Option<TriangleHit> {
         let within = self.pose.prediction;
         let [a, b, c] = self[i].corners(triangle)?;

@@ -49,12 +49,17 @@ impl InsideTest {
 
     /// Returns the room that holds a mesh. `None` if the last result does not hold for a mesh with points in `ball`.
     fn known(&self, ball: Sphere, placement: &Placement) -> Option<Room> {
+        let room = if let Self::Known(room, ..) = self { *room } else { Room::No };
+        (self.rest(ball, placement) > 0.0).then_some(room)
+    }
+
+    /// Returns the motion for which the last result still holds.
+    fn rest(&self, ball: Sphere, placement: &Placement) -> f64 {
         match self {
-            Self::Unknown => None,
-            Self::NoSolid => Some(Room::No),
-            Self::Known(room, before, slack) => {
-                let motion = placement.motion_bound(before, ball.centre, ball.radius);
-                (motion < *slack).then_some(*room)
+            Self::Unknown => 0.0,
+            Self::NoSolid => f64::INFINITY,
+            Self::Known(_, before, slack) => {
+                slack - placement.motion_bound(before, ball.centre, ball.radius)
             }
         }
     }
@@ -90,6 +95,12 @@ impl<'a> HeldMesh<'a> {
             outer,
             room: *room,
         })
+    }
+
+    /// Returns a motion for which a mesh without contacts is not pushed out.
+    pub(super) fn calm(&self, in_room: &InsideTest, inside: &InsideTest) -> f64 {
+        let test = if self.room == Room::No { inside } else { in_room };
+        test.rest(self.held.ball(), self.placement())
     }
 
     /// Returns the room that the larger mesh is for the smaller one. The middle of the smaller one is in it.
@@ -131,8 +142,8 @@ impl<'a> HeldMesh<'a> {
         is_in_room.then_some(depth - enough)
     }
 
-    /// Returns a motion for which a mesh whose faces lead in stays a room. `None` if the mesh is no room. A low hall is a room for
-    /// what it has space for. Thin bodies have just sunk in a flat solid that is inside out.
+    /// Returns a motion for which a mesh whose faces lead in stays a room. `None` if the mesh is no room. Bodies that fit in a low hall
+    /// are in a room. Thin bodies have just sunk in a flat solid that is inside out.
     fn slack_in_inward_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
         let depth = exit.distance(middle);
         let height = self.held.height(self.way_to(exit), Real::INFINITY);

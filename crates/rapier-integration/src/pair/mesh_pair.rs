@@ -155,6 +155,6 @@ impl<'a> Pair for MeshPair<'a> {
         }
         let has_patches = self.config.has_patches() && self.are_rigid();
         let patches = has_patches.then(|| PatchPlan::new(self.pose.prediction, radius));
-        TriangleQuery { shapes, patches, inside }
+        TriangleQuery { shapes, patches, in_room, inside }
     }
 }

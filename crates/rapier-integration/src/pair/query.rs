@@ -74,6 +74,9 @@ pub(crate) trait PairQuery {
         None
     }
 
+    /// Returns a motion of the moving body for which no contact arises without candidates. Asked for where there is none.
+    fn calm(&self) -> f64;
+
     /// Adds all pairs of subshapes within `margin`, and few others, in any order.
     fn descend(
         &mut self,

@@ -107,11 +107,16 @@ impl<H> CandidateMemory<H> {
         is_calm
     }
 
-    /// Takes note of a query without contacts and candidates. Bodies that meet nothing get no contacts: none is pushed out of
-    /// a solid later.
-    pub(super) fn note_calm(&mut self, pose: &PairPose, moving: &Moving<'_>, reach: Real) {
+    /// Takes note of a query without contacts and candidates. No contact arises without candidates for a motion of `calm`.
+    pub(super) fn note_calm(
+        &mut self,
+        pose: &PairPose,
+        moving: &Moving<'_>,
+        reach: Real,
+        calm: f64,
+    ) {
         let Moving { ball, placement, is_second } = *moving;
-        let rest = self.slack.rest(ball, placement, reach.max(pose.prediction));
+        let rest = calm.min(self.slack.rest(ball, placement, reach.max(pose.prediction)));
         let PairPose { prediction, .. } = *pose;
         let calm = Calm { placement: *placement, ball, is_second, prediction, rest };
         self.calm = (rest > 0.0).then_some(calm);

@@ -169,7 +169,7 @@ impl<'a> SurfaceFilter<'a> {
         (0..2).any(|i| !ends(i) && self.may_hold(i, contact, length))
     }
 
-    /// Returns true if the other triangle of a contact has a point in a solid, or if that is in doubt. `length` is that of
+    /// Returns true if the other triangle of a contact has a point in a solid, or if that is in doubt. `length`: of
     /// the way to the other triangle.
     fn may_hold(&self, i: usize, contact: &TriangleContact, length: f64) -> bool {
         let [start, direction] = self.way(i, contact);
@@ -360,8 +360,8 @@ impl<'a> SurfaceFilter<'a> {
         Some(TriangleContact { normal, distance, point1, point2, ..*contact })
     }
 
-    /// Returns the start and the direction of the ray from the point of a contact on a shape to the other point, in the frame of
-    /// the shape. It begins off the surface.
+    /// Returns start and direction of the ray between both points of a contact, in the frame of a shape. The ray begins off the
+    /// surface of that shape.
     fn way(&self, i: usize, contact: &TriangleContact) -> [DVec3; 2] {
         let way = self.direction(i, contact);
         [self.place(i, contact) + WITHIN * contact.distance * way, way]

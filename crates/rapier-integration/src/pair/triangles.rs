@@ -49,6 +49,9 @@ const OUT_OF_FACE: f64 = 0.7;
 pub(crate) struct TriangleQuery<'q> {
     pub(super) shapes: TriangleShapes<'q>,
     pub(super) patches: Option<PatchPlan>,
+    /// Whether one mesh is a room for the other.
+    pub(super) in_room: &'q InsideTest,
+    /// Whether one mesh is inside the other.
     pub(super) inside: &'q mut InsideTest,
 }
 
@@ -126,6 +129,11 @@ impl PairQuery for TriangleQuery<'_> {
 
     fn clearance(&self, margin: Real) -> Option<Real> {
         self.shapes.clearance(margin)
+    }
+
+    fn calm(&self) -> f64 {
+        HeldMesh::of(&self.shapes)
+            .map_or(f64::INFINITY, |held| held.calm(self.in_room, self.inside))
     }
 
     fn descend(

@@ -77,7 +77,7 @@ where
     P::Query::memory().set(Some(lent));
     memory.end(pose, manifolds.len());
     if manifolds.is_empty() && memory.candidates.is_empty() {
-        memory.note_calm(pose, &query.moving(), query.reach());
+        memory.note_calm(pose, &query.moving(), query.reach(), query.calm());
     }
     outcome
 }

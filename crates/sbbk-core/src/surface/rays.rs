@@ -92,8 +92,8 @@ pub(super) fn winding<'a>(hits: impl Iterator<Item = &'a Hit>) -> i32 {
     sum
 }
 
-/// Length at which a ray from the origin meets a triangle, 1 if it leaves through the front, and true if it meets the border or if
-/// rounding decides on which side of the triangle the origin is. The length may be negative there.
+/// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front. Also true if it meets the border, or
+/// if rounding decides on which side the origin is. The length may be negative there.
 pub(super) fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i8, bool)> {
     let normal = area_vector(corners);
     let along = normal.dot(direction);
@@ -113,8 +113,8 @@ pub(super) fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<
 const CROWD: usize = 64;
 
 /// Returns true if a solid ends within a length along a ray that starts in it. `near` has the corners of all triangles that
-/// the ray may meet, seen from its start. `outward` is the sign with which normals lead out of the solid. Where one part of
-/// the solid ends and another one begins, it does not end. Returns false for a crowd of triangles.
+/// the ray may meet, seen from its start. `outward` is the sign with which normals lead out of the solid. A solid goes on
+/// where one of its parts ends and another begins. Returns false for a crowd of triangles.
 pub fn ends_within(
     near: impl Iterator<Item = [DVec3; 3]>,
     direction: DVec3,

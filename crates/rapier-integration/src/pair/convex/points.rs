@@ -95,7 +95,7 @@ pub(super) fn contact_points(
 const ALONG_BORDER: f64 = 0.1;
 
 /// Calls `found` with the ends of the part of a shape's edge that is along a border. The nearest points alone would turn a rod that
-/// rolls from mesh to mesh. `normal` is that of the face at the border.
+/// rolls from mesh to mesh. `normal`: of the face at the border.
 fn border_points(
     [a, b]: [DVec3; 2],
     [p, q]: [DVec3; 2],

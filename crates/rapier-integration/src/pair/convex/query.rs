@@ -152,6 +152,10 @@ impl PairQuery for ConvexQuery<'_> {
         }
     }
 
+    fn calm(&self) -> f64 {
+        if self.pair.config.leave_solids() { 0.0 } else { f64::INFINITY }
+    }
+
     /// Returns the prediction distance plus the rounding of sixty operations on the largest coordinates.
     /// The rounding exceeds the error of contacts with curved shapes, 1e-7 of the distance.
     fn reach(&self) -> Real {
