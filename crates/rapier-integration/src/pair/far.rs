@@ -31,6 +31,10 @@ const SAME_DIRECTION: f64 = 0.97;
 /// Triangles of each mesh from which rays look ahead. Higher: more time. Lower: small parts of fine meshes are met late.
 const AHEAD: usize = 128;
 
+/// Square of the ratio of sizes from which the larger mesh does not look ahead. Higher: slow on large terrains. Lower: small parts
+/// are met late by what is fine on the larger one.
+const MUCH_LARGER: Real = 16.0;
+
 /// Least cosine of directions that are one. Higher: more time.
 const ONE_DIRECTION: f64 = 0.99;
 
@@ -142,6 +146,10 @@ impl TriangleShapes<'_> {
     fn find_ahead(&self, found: &mut impl FnMut(TriangleHit)) {
         for i in 0..2 {
             let TriangleShape::Mesh(mesh) = &self[i] else { continue };
+            // Few of its triangles would be near.
+            if self[i].size_squared() > MUCH_LARGER * self[1 - i].size_squared() {
+                continue;
+            }
             let count = mesh.view.mesh.indices().len();
             for k in 0..AHEAD.min(count) {
                 let triangle = (k * count / AHEAD.min(count)) as u32;
