@@ -23,7 +23,6 @@ use sbbk_core::tree::{BATCH, LeafBatch, Tree};
 
 use super::chunks::{ChunkResult, has_threads, in_chunks};
 use super::field::Field;
-use super::query::Moving;
 use super::state::Candidate;
 use super::triangle_shape::TriangleShape;
 use super::triangle_shapes::{Hint, TriangleShapes};
@@ -156,9 +155,9 @@ impl TriangleShapes<'_> {
         near: &mut Vec<u32>,
         DescentChunk { found, counts, .. }: &mut DescentChunk,
     ) {
-        let Moving { ball, placement, .. } = self.moving();
-        let frame = FieldFrame::new(&field, placement, margin);
-        let leaves = FieldLeaves::new(&frame, ball.centre, mesh.magnitude());
+        let moving = self.moving();
+        let frame = FieldFrame::new(&field, moving.placement(self.pose), margin);
+        let leaves = FieldLeaves::new(&frame, moving.ball.centre, mesh.magnitude());
         near.clear();
         near.extend(mesh.near(|node| frame.meets(node, ())));
         for triangles in near.chunks(BATCH) {

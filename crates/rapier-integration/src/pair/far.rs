@@ -32,7 +32,7 @@ const SAME_DIRECTION: f64 = 0.97;
 const AHEAD: usize = 128;
 
 /// Square of the ratio of sizes from which the larger mesh does not look ahead. Higher: slow on large terrains. Lower: small parts
-/// are met late by what is fine on the larger one.
+/// meet the teeth of larger ones late.
 const MUCH_LARGER: Real = 16.0;
 
 /// Least cosine of directions that are one. Higher: more time.
@@ -150,12 +150,11 @@ impl TriangleShapes<'_> {
             if self[i].size_squared() > MUCH_LARGER * self[1 - i].size_squared() {
                 continue;
             }
-            let count = mesh.view.mesh.indices().len();
-            for k in 0..AHEAD.min(count) {
-                let triangle = (k * count / AHEAD.min(count)) as u32;
-                for sign in self[i].ways_out() {
-                    self.ahead(i, triangle, *sign).into_iter().for_each(&mut *found);
-                }
+            let (count, signs) = (mesh.view.mesh.indices().len(), self[i].ways_out());
+            let looks = AHEAD.min(count);
+            let triangles = (0..looks).map(|k| (k * count / looks) as u32);
+            for (triangle, &sign) in triangles.flat_map(|t| signs.iter().map(move |s| (t, s))) {
+                self.ahead(i, triangle, sign).into_iter().for_each(&mut *found);
             }
         }
     }
@@ -177,9 +176,7 @@ impl TriangleShapes<'_> {
         }
         let mut pair = [met; 2];
         pair[i] = triangle;
-        let local = self.local(pair)?;
-        let [t1, t2] = &local.corners;
-        Some((pair, TriangleSurfaceContact::of_triangles(contact(t1, t2, f64::from(within))?)))
+        self.nearest_points(pair, f64::from(within))
     }
 
     /// Walks on from a contact. The first step starts at the point of shape `i`.
@@ -204,6 +201,11 @@ impl TriangleShapes<'_> {
         };
         let mut pair = *pair;
         pair[1 - i] = self[1 - i].nearest_triangle(point.as_vec3(), limit as Real)?;
+        self.nearest_points(pair, limit)
+    }
+
+    /// Returns the contact of two triangles, if that is within a limit.
+    fn nearest_points(&self, pair: [u32; 2], limit: f64) -> Option<TriangleHit> {
         let local = self.local(pair)?;
         let [t1, t2] = &local.corners;
         Some((pair, TriangleSurfaceContact::of_triangles(contact(t1, t2, limit)?)))

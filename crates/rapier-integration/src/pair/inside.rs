@@ -162,7 +162,7 @@ impl<'a> HeldMesh<'a> {
 
     /// Returns the placement of the held mesh in the frame of the holder.
     fn placement(&self) -> &'a Placement {
-        [&self.pose.placement12, &self.pose.placement21][self.outer]
+        self.pose.placement_of(self.outer == 0)
     }
 
     /// Least height of a room.

@@ -1,5 +1,6 @@
 use parry3d::math::{Pose, Real, Vector};
 use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::Sphere;
 
 /// Pose of shape 2 in the frame of shape 1, and the prediction distance.
 #[derive(Copy, Clone)]
@@ -28,6 +29,22 @@ impl PairPose {
     /// Returns a point of shape 1 (0) or 2 (1) in the frame of the other shape.
     pub(super) fn in_other(&self, i: usize, point: Vector) -> Vector {
         [&self.placement21, &self.placement12][i].to_frame1(point, Vector::ZERO).as_vec3()
+    }
+}
+
+/// The shape of a pair whose motion limits how long candidates serve.
+#[derive(Copy, Clone)]
+pub(crate) struct Moving {
+    /// A ball around the shape, in the frame of the shape.
+    pub(super) ball: Sphere,
+    /// True for shape 2.
+    pub(super) is_second: bool,
+}
+
+impl Moving {
+    /// Returns the placement of the shape in the frame of the other one.
+    pub(super) fn placement(self, pose: &PairPose) -> &Placement {
+        pose.placement_of(self.is_second)
     }
 }
 

@@ -5,10 +5,9 @@ use std::thread::LocalKey;
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::TrackedContact;
-use sbbk_core::traverse::{DescentCounts, Placement, SlackLimits};
-use sbbk_core::volumes::Sphere;
+use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
-use super::pose::PairPose;
+use super::pose::{Moving, PairPose};
 use super::reduce::{ContactSummary, PatchPlan, Reduction};
 use super::state::{Candidate, HighWaterMark};
 use crate::mesh::Change;
@@ -26,7 +25,7 @@ pub(crate) trait Pair: Copy {
 
     fn pose(&self) -> &PairPose;
 
-    /// Compares with the shapes of the last query, and stores those of this query.
+    /// Stores the shapes of a query. Returns their change since the last query.
     fn update(&self, state: &mut Self::State) -> Change;
 
     /// Begins a query. Call [`update`](Self::update) first.
@@ -50,7 +49,7 @@ pub(crate) trait PairQuery {
     fn pose(&self) -> &PairPose;
 
     /// Returns the body whose motion limits how long candidates serve.
-    fn moving(&self) -> Moving<'_>;
+    fn moving(&self) -> Moving;
 
     /// Returns the distance up to which all contacts are found.
     fn reach(&self) -> Real {
@@ -74,7 +73,8 @@ pub(crate) trait PairQuery {
         None
     }
 
-    /// Returns a motion of the moving body for which no contact arises without candidates. Asked for where there is none.
+    /// Returns a motion of the moving body for which no contact arises without candidates. Queries
+    /// without contacts call this.
     fn calm(&self) -> f64;
 
     /// Adds all pairs of subshapes within `margin`, and few others, in any order.
@@ -118,14 +118,6 @@ pub(crate) trait PairQuery {
 
 /// Contacts with their subshapes.
 pub(crate) type ContactList<C> = Vec<([u32; 2], C)>;
-
-/// A shape's bounding ball in its own frame, and that frame in the frame of the other shape.
-pub(crate) struct Moving<'a> {
-    pub(super) ball: Sphere,
-    pub(super) placement: &'a Placement,
-    /// True for shape 2.
-    pub(super) is_second: bool,
-}
 
 /// Distances of a query.
 #[derive(Copy, Clone, Debug)]

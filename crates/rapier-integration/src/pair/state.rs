@@ -13,10 +13,8 @@ use parry3d::query::details::{
 };
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use sbbk_core::traverse::{Placement, Slack};
-use sbbk_core::volumes::Sphere;
 
-use super::pose::PairPose;
-use super::query::Moving;
+use super::pose::{Moving, PairPose};
 use crate::mesh::Change;
 
 /// State of a pair: data `S` of its shapes, and candidates with hints `H`.
@@ -63,10 +61,8 @@ pub(super) struct CandidateMemory<H> {
 /// A pair without contacts and candidates, which gets none while the moving body moves by less than `rest`.
 #[derive(Clone)]
 struct Calm {
+    moving: Moving,
     placement: Placement,
-    ball: Sphere,
-    /// True if shape 2 is the moving body.
-    is_second: bool,
     prediction: Real,
     rest: f64,
 }
@@ -95,10 +91,8 @@ impl<H> CandidateMemory<H> {
     /// Returns true if the last query found neither contacts nor candidates, and the pair has moved too little for any. Takes
     /// note of the placement.
     pub(super) fn is_calm(&mut self, pose: &PairPose) -> bool {
-        let Some(Calm { placement, ball, is_second, prediction, rest }) = &self.calm else {
-            return false;
-        };
-        let now = pose.placement_of(*is_second);
+        let Some(Calm { moving, placement, prediction, rest }) = &self.calm else { return false };
+        let (now, ball) = (moving.placement(pose), moving.ball);
         let motion = now.motion_bound(placement, ball.centre, ball.radius);
         let is_calm = pose.prediction == *prediction && motion < *rest;
         if is_calm {
@@ -108,17 +102,11 @@ impl<H> CandidateMemory<H> {
     }
 
     /// Takes note of a query without contacts and candidates. No contact arises without candidates for a motion of `calm`.
-    pub(super) fn note_calm(
-        &mut self,
-        pose: &PairPose,
-        moving: &Moving<'_>,
-        reach: Real,
-        calm: f64,
-    ) {
-        let Moving { ball, placement, is_second } = *moving;
-        let rest = calm.min(self.slack.rest(ball, placement, reach.max(pose.prediction)));
-        let PairPose { prediction, .. } = *pose;
-        let calm = Calm { placement: *placement, ball, is_second, prediction, rest };
+    pub(super) fn note_calm(&mut self, pose: &PairPose, moving: Moving, reach: Real, calm: f64) {
+        let (placement, PairPose { prediction, .. }) = (*moving.placement(pose), *pose);
+        let reach = reach.max(prediction);
+        let rest = calm.min(self.slack.rest(moving.ball, &placement, reach));
+        let calm = Calm { moving, placement, prediction, rest };
         self.calm = (rest > 0.0).then_some(calm);
     }
 

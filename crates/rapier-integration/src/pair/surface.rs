@@ -360,8 +360,8 @@ impl<'a> SurfaceFilter<'a> {
         Some(TriangleContact { normal, distance, point1, point2, ..*contact })
     }
 
-    /// Returns start and direction of the ray between both points of a contact, in the frame of a shape. The ray begins off the
-    /// surface of that shape.
+    /// Returns start and direction of the ray between both points of a contact, in the frame of a shape. The ray begins a
+    /// little way off the surface.
     fn way(&self, i: usize, contact: &TriangleContact) -> [DVec3; 2] {
         let way = self.direction(i, contact);
         [self.place(i, contact) + WITHIN * contact.distance * way, way]

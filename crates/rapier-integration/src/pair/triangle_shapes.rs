@@ -16,8 +16,7 @@ use sbbk_core::tree::Tree;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
-use super::pose::PairPose;
-use super::query::Moving;
+use super::pose::{Moving, PairPose};
 use super::reduce::FILTERED;
 use super::triangle_shape::{FieldShape, MeshShape, TriangleShape};
 use crate::mesh::MeshView;
@@ -118,11 +117,9 @@ impl TriangleShapes<'_> {
     }
 
     /// Returns the body whose motion limits how long candidates serve: the smaller one.
-    pub(super) fn moving(&self) -> Moving<'_> {
-        let PairPose { placement12, placement21, .. } = self.pose;
+    pub(super) fn moving(&self) -> Moving {
         let smaller = 1 - self.larger;
-        let placement = [placement21, placement12][smaller];
-        Moving { ball: self[smaller].ball(), placement, is_second: smaller == 1 }
+        Moving { ball: self[smaller].ball(), is_second: smaller == 1 }
     }
 
     /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one, if that is more than

@@ -20,8 +20,8 @@ use super::descents::DescentMemory;
 use super::inside::{HeldMesh, InsideTest};
 use super::islands::{Crossing, Overlap, OverlapIslands};
 use super::passed::PassedTriangles;
-use super::pose::PairPose;
-use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery};
+use super::pose::{Moving, PairPose};
+use super::query::{ContactList, ContactPoints, Limits, Memory, PairQuery};
 use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
 use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict};
@@ -49,9 +49,9 @@ const OUT_OF_FACE: f64 = 0.7;
 pub(crate) struct TriangleQuery<'q> {
     pub(super) shapes: TriangleShapes<'q>,
     pub(super) patches: Option<PatchPlan>,
-    /// Whether one mesh is a room for the other.
+    /// Tells if one mesh is a room for the other.
     pub(super) in_room: &'q InsideTest,
-    /// Whether one mesh is inside the other.
+    /// Tells if one mesh is inside the other.
     pub(super) inside: &'q mut InsideTest,
 }
 
@@ -119,7 +119,7 @@ impl PairQuery for TriangleQuery<'_> {
         self.shapes.pose
     }
 
-    fn moving(&self) -> Moving<'_> {
+    fn moving(&self) -> Moving {
         self.shapes.moving()
     }
 

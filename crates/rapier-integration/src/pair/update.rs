@@ -77,7 +77,7 @@ where
     P::Query::memory().set(Some(lent));
     memory.end(pose, manifolds.len());
     if manifolds.is_empty() && memory.candidates.is_empty() {
-        memory.note_calm(pose, &query.moving(), query.reach(), query.calm());
+        memory.note_calm(pose, query.moving(), query.reach(), query.calm());
     }
     outcome
 }
@@ -96,7 +96,7 @@ fn update_contacts<Q: PairQuery>(
     }
     let (moving, reach) = (query.moving(), query.reach());
     let had_none = !memory.slack.is_new() && memory.candidates.is_empty();
-    let plan = memory.slack.plan(moving.ball, moving.placement, reach, Q::SLACK);
+    let plan = memory.slack.plan(moving.ball, moving.placement(query.pose()), reach, Q::SLACK);
     let (outcome, margin) = match plan {
         SlackPlan::Reuse { margin, .. } => (QueryOutcome::Reused, margin),
         SlackPlan::Descend { margin, .. } => {

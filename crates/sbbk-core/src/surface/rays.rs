@@ -77,19 +77,21 @@ pub(super) struct Hit {
 /// Hits of a ray.
 pub(super) type Hits = ArrayVec<Hit, MOST_HITS>;
 
-/// Times that a ray leaves the surface less times that it enters. Triangles at one place count once unless the hits are
-/// exact: doubles, and the two at an edge.
+/// Times that a ray leaves the surface less times that it enters.
 pub(super) fn winding<'a>(hits: impl Iterator<Item = &'a Hit>) -> i32 {
-    let mut sum = 0;
+    let hits = hits.map(|hit| (hit.length, hit.sign, hit.is_exact));
+    crossings(hits).map(|(_, sign)| sign).sum()
+}
+
+/// Returns the length and the sign of each hit, the nearest first. Triangles at one place count once unless the hits are exact:
+/// doubles, and the two at an edge. Others have sign 0.
+fn crossings(hits: impl Iterator<Item = (f64, i8, bool)>) -> impl Iterator<Item = (f64, i32)> {
     let mut last = [(f64::NEG_INFINITY, false); 2];
-    for &Hit { length, sign, is_exact, .. } in hits {
-        let last = &mut last[usize::from(sign > 0)];
-        if length - last.0 > TIE * length || is_exact && last.1 {
-            sum += i32::from(sign);
-        }
-        *last = (length, is_exact);
-    }
-    sum
+    hits.map(move |(length, sign, is_exact)| {
+        let before = std::mem::replace(&mut last[usize::from(sign > 0)], (length, is_exact));
+        let counts = length - before.0 > TIE * length || is_exact && before.1;
+        (length, if counts { sign.into() } else { 0 })
+    })
 }
 
 /// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front. Also true if it meets the border, or
@@ -130,18 +132,13 @@ pub fn ends_within(
     };
     let mut hits: ArrayVec<_, CROWD> = near.iter().filter_map(hit).collect();
     hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut parts, mut end) = (1, None);
-    let mut last = [f64::NEG_INFINITY; 2];
-    for (at, sign, _) in hits {
+    let (mut parts, mut end) = (1.0, None);
+    for (at, sign) in crossings(hits.into_iter().map(|(at, sign, _)| (at, sign, false))) {
         if end.is_some_and(|end| at - end > TIE * at) {
             return true;
         }
-        let leaves = f64::from(sign) * outward > 0.0;
-        // The two triangles at an edge count once.
-        if at - std::mem::replace(&mut last[usize::from(leaves)], at) > TIE * at {
-            parts += if leaves { -1 } else { 1 };
-        }
-        end = (parts <= 0).then_some(at);
+        parts -= f64::from(sign) * outward;
+        end = (parts <= 0.0).then_some(at);
     }
     end.is_some()
 }

@@ -18,9 +18,9 @@ use super::parts::{Part, PartData, Parts, PlacedPart};
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
 use crate::mesh::{Change, LazySurface, PairMesh, is_covered};
-use crate::pair::pose::PairPose;
+use crate::pair::pose::{Moving, PairPose};
 use crate::pair::query::{
-    ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory,
+    ContactList, ContactPoints, Limits, Memory, Pair, PairQuery, QueryMemory,
 };
 use crate::pair::reduce::{ContactSummary, PatchPlan};
 use crate::pair::state::Candidate;
@@ -140,16 +140,12 @@ impl PairQuery for ConvexQuery<'_> {
         self.pair.pose
     }
 
-    fn moving(&self) -> Moving<'_> {
-        let [to_parts, to_mesh] = self.pair.mesh_place.placements(self.pair.pose);
+    fn moving(&self) -> Moving {
         let (mesh, parts) = (self.pair.mesh.ball(), self.part_data.ball);
-        let is_second = self.pair.mesh_place.is_second();
         // The smaller body moves less when it rotates.
-        if mesh.radius <= parts.radius {
-            Moving { ball: mesh, placement: to_parts, is_second }
-        } else {
-            Moving { ball: parts, placement: to_mesh, is_second: !is_second }
-        }
+        let is_mesh = mesh.radius <= parts.radius;
+        let is_second = self.pair.mesh_place.is_second() == is_mesh;
+        Moving { ball: if is_mesh { mesh } else { parts }, is_second }
     }
 
     fn calm(&self) -> f64 {

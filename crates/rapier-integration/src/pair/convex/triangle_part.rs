@@ -57,7 +57,7 @@ const LEVEL: f64 = 2.0e-3;
 
 /// Depth, in prediction distances, up to which a part counts as above the face at a border. Higher: rims do not carry what
 /// overhangs them. Lower: fast bodies stumble where meshes meet.
-const LIP: f64 = 0.5;
+const BORDER_DEPTH: f64 = 0.5;
 
 /// Barycentric coordinate from which a point counts as within a triangle. Higher: rounding hides walls from what stands at
 /// their feet. Lower: walls have contacts above them.
@@ -288,11 +288,11 @@ impl TrianglePartPair<'_> {
         let ConvexContact { distance, normal: own, on_shape, .. } = *contact;
         let face = self.face_contact(&self.placed.in_part(self.corners))?;
         let radius = f64::from(self.part.shape.radius());
-        if radius - face.distance > LIP * f64::from(self.pair.pose.prediction) {
+        if radius - face.distance > BORDER_DEPTH * f64::from(self.pair.pose.prediction) {
             return None;
         }
         let normal = face.normal;
-        // The nearest point of the part is as far from the plane as it is along the normal.
+        // Measures the way between the nearest points along the normal of the face.
         let distance = radius + (distance - radius) * normal.dot(own).max(0.0);
         // Under the part: a part that rolls would seem to come down on a point ahead.
         let on_triangle = on_shape - distance * normal;
