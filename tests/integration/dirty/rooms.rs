@@ -190,6 +190,28 @@ fn bodies_stay_in_low_halls_that_face_inwards() {
     }
 }
 
+/// Small bodies are with their middles behind the floor after one step. Would catch rooms that push them out.
+#[test]
+fn bodies_just_behind_walls_that_face_inwards_come_back() {
+    const HALF: f32 = 0.06;
+    let speed = 8.0;
+    for (cells, flags) in [(1, FLAGS[0]), (5, FLAGS[1])] {
+        let room = mesh::cuboid(Vec3::splat(ROOM), cells);
+        let room = mesh::turned_inside_out(room).shape_with(flags);
+        for body in [mesh::cuboid(Vec3::splat(HALF), 2), mesh::ball(HALF, 6)] {
+            for behind in [0.05, 0.2, 0.35, 0.45] {
+                let height = speed / 60.0 - behind * HALF;
+                let start = Vec3::new(0.37, height - ROOM, 0.21);
+                let start = RigidBodyBuilder::dynamic().translation(start).linvel(-speed * Vec3::Y);
+                let room = world(ColliderBuilder::new(room.clone()));
+                let body = ColliderBuilder::new(body.shape_with(flags));
+                let end = after(60, room, start, body).translation();
+                assert!(end.y > -ROOM, "{behind} behind a floor of {cells}: {end}");
+            }
+        }
+    }
+}
+
 /// Rooms whose floor has a cell that is wound the other way. Would catch bodies that count as outside, as the nearest triangle
 /// faces them.
 #[test]

@@ -14,8 +14,8 @@ use super::triangle_shapes::{
 };
 use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
 
-/// Part of a body that may stick out of a room that holds it, in half heights of the body. Higher:
-/// bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
+/// Part of a body that may stick out of a room that holds it, in half heights of the body. Where faces lead in, the other part is
+/// enough. Higher: bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
 const STICKS_OUT: Real = 0.5;
 
 /// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in tenths of its
@@ -114,7 +114,9 @@ impl<'a> HeldMesh<'a> {
             return room;
         }
         let middle = self.in_holder(ball.centre);
-        let Some((exit, room)) = self.exit(middle, test) else { return Room::No };
+        let Some((exit, room)) = self.exit(middle, test) else {
+            return if self.is_behind_wall(middle, test) { Room::FacingIn } else { Room::No };
+        };
         let slack = match room {
             Room::FacingOut => self.slack_in_room(middle, exit),
             _ => self.slack_in_inward_room(middle, exit),
@@ -123,6 +125,27 @@ impl<'a> HeldMesh<'a> {
             *test = InsideTest::new(room, placement, slack);
         }
         if slack.is_some() { room } else { Room::No }
+    }
+
+    /// Returns true if the middle of the held mesh is a little behind a wall of a room whose faces lead in. A fast body is there after
+    /// a step. `middle` is outside.
+    fn is_behind_wall(&self, middle: Vector, test: &mut InsideTest) -> bool {
+        let most = f64::from(STICKS_OUT * self.held.ball().radius);
+        if let InsideTest::Known(_, _, slack) = test
+            && *slack > most
+        {
+            *slack -= most;
+            return false;
+        }
+        if self.surface.kind() != SurfaceKind::InsideOut {
+            return false;
+        }
+        *test = InsideTest::Unknown;
+        let Some((_, wall, behind)) = self.surface.nearest(middle) else { return false };
+        let height = self.held.height(self.way_to(wall), Real::INFINITY);
+        behind <= -BEHIND
+            && wall.distance(middle) <= STICKS_OUT * height
+            && self.slack_in_inward_room(2.0 * wall - middle, wall).is_some()
     }
 
     /// Returns a motion for which a mesh whose faces lead out stays a room. `None` if the mesh is no room. The held mesh hardly
