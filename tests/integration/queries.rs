@@ -8,7 +8,7 @@ use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{
     ClosestPoints, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus,
 };
-use rapier3d::parry::shape::{Cuboid, Shape, TriMesh};
+use rapier3d::parry::shape::{Ball, Capsule, Cuboid, Cylinder, Shape, TriMesh};
 use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_truth::TruthPair;
 
@@ -177,6 +177,60 @@ fn casts_slide_along_a_wall_up_to_the_next_one() {
             }
         }
     }
+}
+
+/// Bodies start within the target distance of a jagged ground, and cross the ground later. Would catch casts that drop a triangle
+/// for good since another one is nearer at first: characters would walk into the ground.
+#[test]
+fn casts_that_start_within_the_target_distance_pass_nothing() {
+    let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
+    let mut random = Rand32::new(11);
+    let mut ground = mesh::floor(4.0, 8);
+    ground.vertices.iter_mut().for_each(|at| at.y += 0.3 * random.rand_float());
+    let ground = shape(&ground);
+    let body = shape(&mesh::ball(0.3, 3));
+    let (capsule, cylinder) = (Capsule::new_y(0.3, 0.2), Cylinder::new(0.3, 0.2));
+    let cuboid = Cuboid::new(Vec3::new(0.2, 0.35, 0.2));
+    let bodies: [&dyn Shape; 5] = [&Ball::new(0.3), &capsule, &cylinder, &cuboid, &body];
+    let mut crossings = 0;
+    for case in 0..4000 {
+        let body = bodies[case % bodies.len()];
+        let target_distance = 0.3 * random.rand_float();
+        let mut within = |most: f32| most * (2.0 * random.rand_float() - 1.0);
+        let start = Vec3::new(within(1.2), 0.6 + within(0.3), within(1.2));
+        let start = Pose3::from_parts(start, rotation(&mut random));
+        let distance = |pose: &Pose3| stock.distance(pose, &ground, body).unwrap().distance;
+        let nearest = distance(&start);
+        if nearest < 1e-3 || nearest > target_distance {
+            continue;
+        }
+        let velocity = direction(&mut random);
+        let at = |time: f32| Pose3 { translation: start.translation + time * velocity, ..start };
+        let mut times = (0..75).map(|step| 0.02 * step as f32);
+        let Some(crossing) = times.find(|&time| distance(&at(time)) <= 0.0) else { continue };
+        crossings += 1;
+        let options = ShapeCastOptions {
+            target_distance,
+            stop_at_penetration: false,
+            ..ShapeCastOptions::with_max_time_of_impact(2.0)
+        };
+        let hits = [
+            ours.cast_shapes(&start, velocity, &ground, body, options),
+            ours.cast_shapes(
+                &start.inverse(),
+                start.rotation.inverse() * -velocity,
+                body,
+                &ground,
+                options,
+            ),
+        ];
+        for hit in hits {
+            let time = hit.unwrap().map(|hit| hit.time_of_impact);
+            let is_in_time = time.is_some_and(|time| time <= crossing);
+            assert!(is_in_time, "{case}, {:?}: {time:?}, not {crossing}", body.shape_type());
+        }
+    }
+    assert!(crossings > 400, "{crossings} cross");
 }
 
 /// Starts that cross: stock's statuses, and the way out.

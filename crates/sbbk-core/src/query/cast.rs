@@ -64,6 +64,10 @@ pub struct Cast {
 /// rounding keeps them from being noticed before the steps are used up.
 const ARRIVED: f64 = 1.0e-12;
 
+/// Target distances that are tried before zero, each half as long as the last one. Higher: more time beside walls. Lower: impacts
+/// that begin to count below the target distance are late.
+const HALVINGS: usize = 6;
+
 /// Steps of Newton's method. Grazing impacts gain a binary digit a step; others take two or three
 /// steps.
 const STEP_LIMIT: usize = 100;
@@ -101,9 +105,12 @@ pub fn cast(
                     return;
                 }
                 let (one, two) = (batch1.triangle(lane1), batch2.triangle(lane2));
-                let cast = Cast::of_triangles(&placement, one, two, velocity, &options, latest);
-                let is_first = |cast: &Cast| first.is_none_or(|first| cast.time < first.time);
-                if let Some(cast) = cast.filter(|cast| is_first(cast) && counts(cast)) {
+                let cast = |target_distance: f32| {
+                    let options = CastOptions { target_distance, ..options };
+                    let cast = Cast::of_triangles(&placement, one, two, velocity, &options, latest);
+                    cast.filter(|cast| first.is_none_or(|first| cast.time < first.time))
+                };
+                if let Some(cast) = first_that_counts(target_distance, cast, &counts) {
                     (first, latest) = (Some(cast), cast.time);
                     let is_later = cast.time > 0.0;
                     sweep.limit = if is_later { (cast.time as f32).next_up() } else { FOUND };
@@ -112,6 +119,24 @@ pub fn cast(
         }
     });
     first
+}
+
+/// Returns the first impact that `counts`, among those at a target distance and at less and less. An impact at distance zero
+/// always counts. `cast` returns the impact at a target distance.
+pub fn first_that_counts<C>(
+    target_distance: f32,
+    cast: impl Fn(f32) -> Option<C>,
+    counts: impl Fn(&C) -> bool,
+) -> Option<C> {
+    let mut target = target_distance;
+    for _ in 0..HALVINGS {
+        let found = cast(target)?;
+        if counts(&found) {
+            return Some(found);
+        }
+        target *= 0.5;
+    }
+    cast(0.0)
 }
 
 impl CastOptions {

@@ -8,6 +8,7 @@ use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::convex::ConvexContact;
+use sbbk_core::query::first_that_counts;
 
 use super::contact::{core_contact, core_support};
 use super::near::time_of;
@@ -57,10 +58,14 @@ impl ConvexSearch<'_> {
         let may_slide = !options.stop_at_penetration && target > 0.0;
         self.least(latest, time, |triangle, best| {
             let latest = latest.min(best);
-            let cast = self.cast_triangle(triangle, of_triangle, options, latest)?;
-            let time = cast.time as Real;
-            let is_later = f64::from(time) >= best;
-            (!is_later && (!may_slide || self.is_minimum(&cast.found))).then_some((time, cast))
+            let cast = |target_distance: Real| {
+                let options = ShapeCastOptions { target_distance, ..options };
+                let cast = self.cast_triangle(triangle, of_triangle, options, latest)?;
+                let time = cast.time as Real;
+                (f64::from(time) < best).then_some((time, cast))
+            };
+            let counts = |(_, cast): &(Real, FoundCast)| !may_slide || self.is_minimum(&cast.found);
+            first_that_counts(target_distance, cast, counts)
         })
     }
 
