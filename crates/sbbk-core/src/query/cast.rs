@@ -64,9 +64,10 @@ pub struct Cast {
 /// rounding keeps them from being noticed before the steps are used up.
 const ARRIVED: f64 = 1.0e-12;
 
-/// Target distances that are tried before zero, each half as long as the last one. Higher: more time beside walls. Lower: impacts
+/// Target distances that are tried before zero, and the ratio of each to the last one. More: more time beside walls. Fewer: impacts
 /// that begin to count below the target distance are late.
-const HALVINGS: usize = 6;
+const TARGETS: usize = 12;
+const NEXT_TARGET: f32 = 0.75;
 
 /// Steps of Newton's method. Grazing impacts gain a binary digit a step; others take two or three
 /// steps.
@@ -129,12 +130,12 @@ pub fn first_that_counts<C>(
     counts: impl Fn(&C) -> bool,
 ) -> Option<C> {
     let mut target = target_distance;
-    for _ in 0..HALVINGS {
+    for _ in 0..TARGETS {
         let found = cast(target)?;
         if counts(&found) {
             return Some(found);
         }
-        target *= 0.5;
+        target *= NEXT_TARGET;
     }
     cast(0.0)
 }
