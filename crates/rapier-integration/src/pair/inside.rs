@@ -128,7 +128,7 @@ impl<'a> HeldMesh<'a> {
     }
 
     /// Returns true if the middle of the held mesh is a little behind a wall of a room whose faces lead in. A fast body is there after
-    /// a step. `middle` is outside.
+    /// a step. Low rooms may be flat solids that are inside out. `middle` is outside.
     fn is_behind_wall(&self, middle: Vector, test: &mut InsideTest) -> bool {
         let most = f64::from(STICKS_OUT * self.held.ball().radius);
         if let InsideTest::Known(_, _, slack) = test
@@ -145,7 +145,7 @@ impl<'a> HeldMesh<'a> {
         let height = self.held.height(self.way_to(wall), Real::INFINITY);
         behind <= -BEHIND
             && wall.distance(middle) <= STICKS_OUT * height
-            && self.slack_in_inward_room(2.0 * wall - middle, wall).is_some()
+            && !self.is_lower(self.least_height(), 2.0 * wall - middle, wall, -1.0)
     }
 
     /// Returns a motion for which a mesh whose faces lead out stays a room. `None` if the mesh is no room. The held mesh hardly
