@@ -275,3 +275,37 @@ fn overlaps_with_the_walls_of_a_slot_have_contacts() {
     // Stock loses none of these.
     assert!(lost <= 1, "{lost} of {count}");
 }
+
+/// An edge of a door leaf is in an edge of its jamb, farther sideways than into it. Would catch contacts that push the leaf aside:
+/// a fast leaf went through.
+#[test]
+fn edges_in_edges_push_the_shorter_way() {
+    let (leaf, jamb) = (Vec3::new(0.5, 1.0, 0.04), Vec3::new(0.1, 1.1, 0.1));
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(17);
+    let (mut lost, mut wrong) = (0, 0);
+    for case in 0..600 {
+        let mut number = |least: f32, most: f32| least + (most - least) * random.rand_float();
+        let cells = 1 + case % 5;
+        let turn =
+            Quat::from_rotation_y(-number(0.0, 0.2)) * Quat::from_rotation_z(number(-0.02, 0.02));
+        let tip = turn * Vec3::new(leaf.x, 0.0, -leaf.z);
+        let (aside, deep) = (number(0.09, 0.12), number(0.01, 0.07));
+        let lift = if case % 2 == 0 { 0.0 } else { number(-0.08, 0.08) };
+        let at = Vec3::new(aside - jamb.x - tip.x, lift, jamb.z - deep - tip.z);
+        let pose = Pose::from_parts(at, turn);
+        let truth =
+            DefaultQueryDispatcher.contact(&pose, &Cuboid::new(jamb), &Cuboid::new(leaf), 0.0);
+        let truth = truth.unwrap().expect("the edges cross");
+        let [jamb, leaf] = [jamb, leaf].map(|half| mesh::cuboid(half, cells).shape());
+        let found = Question::new(&*jamb.0, &*leaf.0, pose).fresh(&dispatcher);
+        let found: Vec<_> =
+            found.iter().map(|it| (it.local_n1.dot(truth.normal1), distance(it))).collect();
+        let has_right = found.iter().any(|&(along, dist)| along > 0.9 && dist < 0.5 * truth.dist);
+        let has_wrong = found.iter().any(|&(along, dist)| along < 0.5 && dist < truth.dist - 0.01);
+        lost += usize::from(!has_right);
+        wrong += usize::from(has_wrong);
+    }
+    println!("{lost} and {wrong} of 600");
+    assert!(lost <= 2 && wrong <= 12, "{lost} and {wrong} of 600");
+}

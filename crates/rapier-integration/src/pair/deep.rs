@@ -9,10 +9,10 @@ use glamx::DVec3;
 use parry3d::query::Ray;
 use sbbk_core::query::TrianglePair;
 
-use super::islands::{IslandWay, OverlapIslands, Unsupported};
+use super::islands::{IslandWay, OverlapIslands, SAME_SIDE, Unsupported};
 use super::pose::PairPose;
 use super::query::ContactList;
-use super::triangle_shapes::{TriangleShapes, TriangleSurfaceContact};
+use super::triangle_shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 
 /// Least cosine between the area vector of a contour and a shorter way out. Higher: boxes leave boxes at a slant. Lower:
 /// contacts of several contours push against each other.
@@ -37,6 +37,10 @@ const FLAT: f64 = 1.0e-3;
 /// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all their way. Lower: bodies deep
 /// in others turn and sink.
 const DEPTH_PER_LENGTH: f64 = 0.5;
+
+/// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor let go. Lower: edges that cross push
+/// each other aside.
+const ALIKE: f64 = 1.1;
 
 /// Greatest number of points of a contour. Higher: more time; lower: bodies turn about the chosen ones.
 const MOST_POINTS: usize = 6;
@@ -192,7 +196,8 @@ struct DeepIsland<'a> {
     is_sheet: [bool; 2],
 }
 
-/// Adds contacts along the ways out of contours to islands that have too few.
+/// Adds contacts along the ways out of contours to islands that have too few. Contacts that push aside by more than a contour are
+/// removed: triangles beside an edge that crosses an edge may know no shorter way.
 pub(super) fn add_contacts(
     shapes: &TriangleShapes<'_>,
     islands: &mut OverlapIslands,
@@ -200,6 +205,7 @@ pub(super) fn add_contacts(
     contacts: &mut ContactList<TriangleSurfaceContact>,
 ) {
     islands.list_unsupported(crossings);
+    let mut has_ways = false;
     for island in crossings.chunk_by(|a, b| a.island == b.island) {
         segments.clear();
         segments.extend(
@@ -217,12 +223,38 @@ pub(super) fn add_contacts(
         if length > contour.most || !islands.leads_apart(normal) {
             continue;
         }
+        if length >= island[0].most {
+            continue;
+        }
         contacts.extend(points.iter().zip(exits).filter_map(|((segment, point), exits)| {
             Some((segment.pair, deep.contact_across(segment.pair, *point, normal, exits?)?))
         }));
-        let way = IslandWay { normal, is_exact: contour.is_flat };
+        let way = IslandWay { normal, length, is_exact: contour.is_flat, is_sheet };
         islands.set_way(segments[0].pair, way);
+        has_ways = true;
     }
+    if has_ways {
+        contacts.retain(|hit| !pushes_farther(shapes, islands, hit));
+    }
+}
+
+/// Returns true if a contact pushes aside, and by more than the way out of its island, which parts its triangles as well.
+fn pushes_farther(
+    shapes: &TriangleShapes<'_>,
+    islands: &mut OverlapIslands,
+    (pair, TriangleSurfaceContact { contact, source }): &TriangleHit,
+) -> bool {
+    let Some(way) = islands.way(*pair) else { return false };
+    if *source == ContactSource::PushOut
+        || -contact.distance <= way.length
+        || way.normal.dot(contact.normal) >= SAME_SIDE
+    {
+        return false;
+    }
+    let Some([origin, ..]) = shapes[0].corners(pair[0]) else { return false };
+    let middle = origin.as_dvec3() + 0.5 * (contact.point1 + contact.point2);
+    let exits = DeepIsland { shapes, is_sheet: way.is_sheet }.exits(middle, way.normal);
+    exits.is_none_or(|[(one, _), (two, _)]| one + two <= ALIKE * way.length)
 }
 
 impl DeepIsland<'_> {

@@ -37,6 +37,8 @@ pub(super) struct Support {
     reliable: u32,
     /// True if a contact on the far side of a thin body was rejected. No others are added.
     is_thin: bool,
+    /// Depth of the deepest contact that pushes far, or zero. A contour may know a shorter way.
+    farthest: f64,
     /// Way out of the overlap, if the contour has one.
     way: Option<IslandWay>,
     /// Sum of the normals of reliable contacts.
@@ -58,8 +60,12 @@ const SUPPORTED: u32 = 8;
 #[derive(Copy, Clone)]
 pub(super) struct IslandWay {
     pub(super) normal: DVec3,
+    /// Depth of the overlap along the way.
+    pub(super) length: f64,
     /// True if all of the contour is in a plane across the way.
     pub(super) is_exact: bool,
+    /// True for each shape that may be left through both sides of its triangles.
+    pub(super) is_sheet: [bool; 2],
 }
 
 impl IslandWay {
@@ -114,6 +120,8 @@ pub(super) struct Unsupported {
     pub(super) pair: [u32; 2],
     /// True if the pair has a final contact.
     pub(super) has_contact: bool,
+    /// Depth from which the way out of a contour is of no use to the island. Infinite if contacts are too few.
+    pub(super) most: f64,
     /// Signs with which the normals of the triangles lead out of the shapes.
     pub(super) outward: [f64; 2],
     /// See [`Crossing::is_sheet`].
@@ -169,6 +177,12 @@ impl Crossing {
         if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
     }
 
+    /// Returns the depth of a contact that pushes far out of a solid, or zero.
+    fn far_depth(&self) -> f64 {
+        let is_far = self.sheet.is_none() && self.depth > FAR * self.greatest;
+        if is_far { self.depth } else { 0.0 }
+    }
+
     /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. A sheet counts as
     /// solid on the side away from the middle of the other shape.
     fn outward_signs(&self) -> Option<[f64; 2]> {
@@ -188,6 +202,10 @@ const ALONG_WAY: f64 = 0.97;
 /// Least cosine between an exact way out of an overlap and contacts along it. Higher: rounding removes contacts.
 /// Lower: round meshes that fall on flat floors are kicked aside.
 const SAME_WAY: f64 = 0.9999;
+
+/// Share of the greatest depth of a contact from which a contour may know a shorter way. Higher: edges that cross push each other
+/// aside. Lower: more time for bodies in each other.
+const FAR: f64 = 0.5;
 
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
 /// lower: contacts that do not push against each other are rejected.
@@ -264,7 +282,8 @@ impl OverlapIslands {
         self.crossings.sort_unstable_by_key(|crossing| crossing.pair);
         let pushes_to = |side: f64| self.crossings.iter().any(|crossing| crossing.side() == side);
         let has_both_sides = pushes_to(1.0) && pushes_to(-1.0);
-        if !has_both_sides && self.crossings.iter().all(|crossing| self.is_fine(crossing)) {
+        let is_good = |crossing: &Crossing| self.is_fine(crossing) && crossing.far_depth() == 0.0;
+        if !has_both_sides && self.crossings.iter().all(is_good) {
             return false;
         }
         self.join();
@@ -277,13 +296,16 @@ impl OverlapIslands {
         if has_sheet && self.reject_sides_of_sheets() {
             self.sum_support();
         }
-        !self.rejected.is_empty() || self.support.values().any(|support| !support.is_enough())
+        let needs_more = |support: &Support| !support.is_enough() || support.farthest > 0.0;
+        !self.rejected.is_empty() || self.support.values().any(needs_more)
     }
 
     /// Joins the triangles of crossings to islands.
     fn join(&mut self) {
         self.islands.clear();
-        for Crossing { pair, .. } in &self.crossings {
+        let crossing = self.crossings.iter().map(|crossing| &crossing.pair);
+        // Where edges cross, triangles across from each other only touch.
+        for pair in crossing.chain(&self.touching) {
             let [node1, node2] = self.nodes(*pair);
             self.islands.join(node1, node2);
         }
@@ -345,25 +367,35 @@ impl OverlapIslands {
         self.support.get(&first).copied().filter(|support| !support.is_enough())
     }
 
-    /// Replaces `list` by the crossings in islands that have too few contacts, one island after another. Crossings with an
-    /// unknown outer side are left out.
+    /// Replaces `list` by the crossings in islands whose contacts are too few or push far, one island after another. Crossings
+    /// with an unknown outer side are left out.
     pub(super) fn list_unsupported(&mut self, list: &mut Vec<Unsupported>) {
         list.clear();
         for index in 0..self.crossings.len() {
             let crossing = self.crossings[index];
             let Crossing { pair, is_crossing, .. } = crossing;
             let Some(outward) = crossing.outward_signs().filter(|_| is_crossing) else { continue };
-            if self.open_support(pair).is_some() {
+            let island = self.island(pair);
+            let support = self.support.get(&island).copied().unwrap_or_default();
+            let most = if support.is_enough() { support.farthest } else { f64::INFINITY };
+            if most > 0.0 {
                 list.push(Unsupported {
-                    island: self.island(pair),
+                    island,
                     pair,
                     has_contact: self.is_fine(&crossing),
+                    most,
                     outward,
                     is_sheet: crossing.is_sheet,
                 });
             }
         }
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
+    }
+
+    /// Returns the way out of the overlap that a pair belongs to, if it is known.
+    pub(super) fn way(&mut self, pair: [u32; 2]) -> Option<IslandWay> {
+        let first = self.island(pair);
+        self.support.get(&first)?.way
     }
 
     /// Sets the way out of the overlap of an island.
@@ -419,6 +451,8 @@ impl OverlapIslands {
             support.separation = self.separation;
             support.pairs += 1;
             support.reliable += u32::from(is_fine);
+            support.farthest =
+                support.farthest.max(if is_fine { crossing.far_depth() } else { 0.0 });
             support.normals += if is_fine { crossing.normal } else { DVec3::ZERO };
             // The side of a sheet is known, so others may be added.
             support.is_thin |= crossing.sheet.is_none() && self.rejected.contains(&crossing.pair);
