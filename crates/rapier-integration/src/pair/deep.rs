@@ -196,8 +196,7 @@ struct DeepIsland<'a> {
     is_sheet: [bool; 2],
 }
 
-/// Adds contacts along the ways out of contours to islands that have too few. Contacts that push aside by more than a contour are
-/// removed: triangles beside an edge that crosses an edge may know no shorter way.
+/// Adds contacts along the ways out of contours to islands that have too few, or whose contacts push farther.
 pub(super) fn add_contacts(
     shapes: &TriangleShapes<'_>,
     islands: &mut OverlapIslands,
@@ -205,7 +204,6 @@ pub(super) fn add_contacts(
     contacts: &mut ContactList<TriangleSurfaceContact>,
 ) {
     islands.list_unsupported(crossings);
-    let mut has_ways = false;
     for island in crossings.chunk_by(|a, b| a.island == b.island) {
         segments.clear();
         segments.extend(
@@ -220,10 +218,7 @@ pub(super) fn add_contacts(
         let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
             continue;
         };
-        if length > contour.most || !islands.leads_apart(normal) {
-            continue;
-        }
-        if length >= island[0].most {
+        if length >= contour.most.min(island[0].most) || !islands.leads_apart(normal) {
             continue;
         }
         contacts.extend(points.iter().zip(exits).filter_map(|((segment, point), exits)| {
@@ -231,9 +226,17 @@ pub(super) fn add_contacts(
         }));
         let way = IslandWay { normal, length, is_exact: contour.is_flat, is_sheet };
         islands.set_way(segments[0].pair, way);
-        has_ways = true;
     }
-    if has_ways {
+}
+
+/// Removes contacts that push aside by more than the way out of their island. Triangles beside an edge that crosses an edge know no
+/// shorter way.
+pub(super) fn remove_farther(
+    shapes: &TriangleShapes<'_>,
+    islands: &mut OverlapIslands,
+    contacts: &mut ContactList<TriangleSurfaceContact>,
+) {
+    if islands.has_ways {
         contacts.retain(|hit| !pushes_farther(shapes, islands, hit));
     }
 }
@@ -254,6 +257,7 @@ fn pushes_farther(
     let Some([origin, ..]) = shapes[0].corners(pair[0]) else { return false };
     let middle = origin.as_dvec3() + 0.5 * (contact.point1 + contact.point2);
     let exits = DeepIsland { shapes, is_sheet: way.is_sheet }.exits(middle, way.normal);
+    // Points of a contact along a wrong way may be beyond the shapes.
     exits.is_none_or(|[(one, _), (two, _)]| one + two <= ALIKE * way.length)
 }
 

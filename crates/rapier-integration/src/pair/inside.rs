@@ -14,7 +14,7 @@ use super::triangle_shapes::{
 };
 use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
 
-/// Part of a body that may stick out of a room that holds it, in half heights of the body. Where faces lead in, the other part is
+/// Part of a body that may stick out of a room that holds it, in half heights of the body. If faces lead in, the other part is
 /// enough. Higher: bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
 const STICKS_OUT: Real = 0.5;
 

@@ -14,6 +14,8 @@ pub(crate) struct OverlapIslands {
     pub(super) touching: Vec<[u32; 2]>,
     /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
     pub(super) separation: Option<DVec3>,
+    /// True if the way out of an island is known.
+    pub(super) has_ways: bool,
     /// Pairs whose contact pushes the wrong way.
     rejected: FxHashSet<[u32; 2]>,
     /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
@@ -227,6 +229,7 @@ impl OverlapIslands {
         self.rejected.clear();
         self.unserved.clear();
         self.separation = None;
+        self.has_ways = false;
     }
 
     /// Adds the pairs of the next part of the first pass.
@@ -304,7 +307,7 @@ impl OverlapIslands {
     fn join(&mut self) {
         self.islands.clear();
         let crossing = self.crossings.iter().map(|crossing| &crossing.pair);
-        // Where edges cross, triangles across from each other only touch.
+        // Triangles on opposite sides of crossing edges only touch.
         for pair in crossing.chain(&self.touching) {
             let [node1, node2] = self.nodes(*pair);
             self.islands.join(node1, node2);
@@ -402,6 +405,7 @@ impl OverlapIslands {
     pub(super) fn set_way(&mut self, pair: [u32; 2], way: IslandWay) {
         let first = self.island(pair);
         self.support.entry(first).or_default().way = Some(way);
+        self.has_ways = true;
     }
 
     /// Returns true if a contact does not push against the direction in which the bodies separate.
