@@ -236,7 +236,7 @@ pub(super) fn remove_farther(
     islands: &mut OverlapIslands,
     contacts: &mut ContactList<TriangleSurfaceContact>,
 ) {
-    if islands.has_ways {
+    if islands.has_ways() {
         contacts.retain(|hit| !pushes_farther(shapes, islands, hit));
     }
 }

@@ -131,8 +131,8 @@ impl<'a> HeldMesh<'a> {
     /// a step. Low rooms may be flat solids that are inside out. `middle` is outside.
     fn is_behind_wall(&self, middle: Vector, test: &mut InsideTest) -> bool {
         let most = f64::from(STICKS_OUT * self.held.ball().radius);
-        if let InsideTest::Known(_, _, slack) = test
-            && *slack > most
+        if test.rest(self.held.ball(), self.placement()) > most
+            && let InsideTest::Known(_, _, slack) = test
         {
             *slack -= most;
             return false;

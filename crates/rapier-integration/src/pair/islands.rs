@@ -14,8 +14,6 @@ pub(crate) struct OverlapIslands {
     pub(super) touching: Vec<[u32; 2]>,
     /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
     pub(super) separation: Option<DVec3>,
-    /// True if the way out of an island is known.
-    pub(super) has_ways: bool,
     /// Pairs whose contact pushes the wrong way.
     rejected: FxHashSet<[u32; 2]>,
     /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
@@ -229,7 +227,6 @@ impl OverlapIslands {
         self.rejected.clear();
         self.unserved.clear();
         self.separation = None;
-        self.has_ways = false;
     }
 
     /// Adds the pairs of the next part of the first pass.
@@ -395,6 +392,11 @@ impl OverlapIslands {
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
     }
 
+    /// Returns true if the way out of an island is known.
+    pub(super) fn has_ways(&self) -> bool {
+        self.support.values().any(|support| support.way.is_some())
+    }
+
     /// Returns the way out of the overlap that a pair belongs to, if it is known.
     pub(super) fn way(&mut self, pair: [u32; 2]) -> Option<IslandWay> {
         let first = self.island(pair);
@@ -405,7 +407,6 @@ impl OverlapIslands {
     pub(super) fn set_way(&mut self, pair: [u32; 2], way: IslandWay) {
         let first = self.island(pair);
         self.support.entry(first).or_default().way = Some(way);
-        self.has_ways = true;
     }
 
     /// Returns true if a contact does not push against the direction in which the bodies separate.

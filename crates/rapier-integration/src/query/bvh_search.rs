@@ -7,7 +7,7 @@ use arrayvec::ArrayVec;
 use glamx::{DMat3, DVec3, Vec3};
 use parry3d::math::{Real, Vector};
 use parry3d::partitioning::{BvhNodeIndex, TraversalAction};
-use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair, best_first, first_that_counts};
+use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair, best_first};
 use sbbk_core::traverse::Placement;
 
 use crate::mesh::MeshView;
@@ -88,16 +88,14 @@ impl BvhSearch<'_> {
             return None;
         }
         let velocity = velocity.as_dvec3();
-        let cast = |triangles: [u32; 2], latest: f64, target_distance: Real| {
+        let cast = |triangles: [u32; 2], latest: f64| {
             let [one, two] = [0, 1].map(|i| (triangles[i], meshes[i].corners(triangles[i])));
-            let options = CastOptions { target_distance, ..options };
-            Cast::of_triangles(placement, one, two, velocity, &options, latest)
+            Cast::of_triangles(placement, one, two, velocity, &options, latest, &counts)
         };
-        let distance = options.target_distance;
         // Bounds of meshes in each other are zero for many pairs, so a search visits many before one that touches.
         if options.stop_at_penetration
             && let Some(meeting) = self.meeting()
-            && let Some(found) = cast([meeting.triangle1, meeting.triangle2], 0.0, distance)
+            && let Some(found) = cast([meeting.triangle1, meeting.triangle2], 0.0)
         {
             return Some(found);
         }
@@ -108,11 +106,10 @@ impl BvhSearch<'_> {
             latest,
             |one, two| one.time(two, velocity, target),
             |triangles, latest| {
-                let cast = |target: Real| {
-                    let cast = cast(triangles, latest, target);
-                    cast.filter(|cast| first.is_none_or(|first| cast.time < first.time))
-                };
-                let found = first_that_counts(distance, cast, &counts)?;
+                let found = cast(triangles, latest)?;
+                if first.is_some_and(|first| found.time >= first.time) {
+                    return None;
+                }
                 first = Some(found);
                 Some(if found.time > 0.0 { found.time } else { f64::NEG_INFINITY })
             },

@@ -106,12 +106,10 @@ pub fn cast(
                     return;
                 }
                 let (one, two) = (batch1.triangle(lane1), batch2.triangle(lane2));
-                let cast = |target_distance: f32| {
-                    let options = CastOptions { target_distance, ..options };
-                    let cast = Cast::of_triangles(&placement, one, two, velocity, &options, latest);
-                    cast.filter(|cast| first.is_none_or(|first| cast.time < first.time))
-                };
-                if let Some(cast) = first_that_counts(target_distance, cast, &counts) {
+                let cast =
+                    Cast::of_triangles(&placement, one, two, velocity, &options, latest, &counts);
+                let is_first = |cast: &Cast| first.is_none_or(|first| cast.time < first.time);
+                if let Some(cast) = cast.filter(is_first) {
                     (first, latest) = (Some(cast), cast.time);
                     let is_later = cast.time > 0.0;
                     sweep.limit = if is_later { (cast.time as f32).next_up() } else { FOUND };
@@ -149,8 +147,8 @@ impl CastOptions {
 }
 
 impl Cast {
-    /// Returns the first impact of two triangles until `latest`, given their indices and corners as in
-    /// [`FoundPair::of`]. Triangle 2 moves by `velocity` in frame 1.
+    /// Returns the first impact of two triangles until `latest` that [counts](first_that_counts). Takes indices and corners as
+    /// [`FoundPair::of`] does. Triangle 2 moves by `velocity` in frame 1.
     #[inline]
     pub fn of_triangles(
         placement: &Placement,
@@ -159,16 +157,21 @@ impl Cast {
         velocity: DVec3,
         options: &CastOptions,
         latest: f64,
+        counts: impl Fn(&Self) -> bool,
     ) -> Option<Self> {
         let pair = TrianglePair::new(placement, corners1, corners2);
-        let target = f64::from(options.target_distance);
-        if !boxes_meet(&pair, velocity, target, latest) {
-            return None;
-        }
-        let (time, contact) = first_impact(&pair, velocity, options, latest)?;
-        let is_penetrating = time == 0.0 && contact.distance < target;
-        let pair = FoundPair::new([triangle1, triangle2], &pair, contact);
-        Some(Self { time, pair, is_penetrating })
+        let cast = |target_distance: f32| {
+            let (options, target) =
+                (CastOptions { target_distance, ..*options }, f64::from(target_distance));
+            if !boxes_meet(&pair, velocity, target, latest) {
+                return None;
+            }
+            let (time, contact) = first_impact(&pair, velocity, &options, latest)?;
+            let is_penetrating = time == 0.0 && contact.distance < target;
+            let pair = FoundPair::new([triangle1, triangle2], &pair, contact);
+            Some(Self { time, pair, is_penetrating })
+        };
+        first_that_counts(options.target_distance, cast, counts)
     }
 }
 

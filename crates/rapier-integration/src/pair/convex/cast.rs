@@ -60,12 +60,12 @@ impl ConvexSearch<'_> {
             let latest = latest.min(best);
             let cast = |target_distance: Real| {
                 let options = ShapeCastOptions { target_distance, ..options };
-                let cast = self.cast_triangle(triangle, of_triangle, options, latest)?;
-                let time = cast.time as Real;
-                (f64::from(time) < best).then_some((time, cast))
+                self.cast_triangle(triangle, of_triangle, options, latest)
             };
-            let counts = |(_, cast): &(Real, FoundCast)| !may_slide || self.is_minimum(&cast.found);
-            first_that_counts(target_distance, cast, counts)
+            let counts = |cast: &FoundCast| !may_slide || self.is_minimum(&cast.found);
+            let cast = first_that_counts(target_distance, cast, counts)?;
+            let time = cast.time as Real;
+            (f64::from(time) < best).then_some((time, cast))
         })
     }
 
