@@ -22,7 +22,7 @@ use super::triangle_shapes::{NEAR_NORMAL, TriangleHit, TriangleShapes, TriangleS
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
-const STEPS: usize = 8;
+const STEPS: usize = 32;
 
 /// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher: thin plates with
 /// soft CCD turn through sheets. Lower: small bodies are stopped by triangles ahead.
@@ -181,11 +181,16 @@ impl TriangleShapes<'_> {
 
     /// Walks on from a contact. The first step starts at the point of shape `i`.
     fn walked(&self, mut i: usize, mut hit: TriangleHit) -> TriangleHit {
+        let mut is_nearest = false;
         for _ in 0..STEPS {
             let known = distance(&hit);
             let next = self.step(i, &hit, known).filter(|next| distance(next) < known);
-            let Some(next) = next else { break };
-            (i, hit) = (1 - i, next);
+            // A step moves both points, so the walk ends only where no step of either shape gains.
+            if is_nearest && next.is_none() {
+                break;
+            }
+            is_nearest = next.is_none();
+            (i, hit) = (1 - i, next.unwrap_or(hit));
         }
         hit
     }

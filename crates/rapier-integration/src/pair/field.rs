@@ -121,6 +121,10 @@ impl Field<'_> {
         triangle.vertices().iter().all(|corner| corner.is_finite()).then_some(triangle)
     }
 
+    pub(super) fn triangle_count(self) -> usize {
+        2 * self.cell_count()
+    }
+
     fn cell_count(self) -> usize {
         self.0.nrows() * self.0.ncols()
     }

@@ -25,6 +25,10 @@ use super::triangles::TriangleQuery;
 use crate::SbbkConfig;
 use crate::mesh::{Change, LazySurface, MeshView, PairMesh};
 
+/// Least number of triangles of both meshes for which a pair uses trees. Higher: slower descents. Lower: four walls of a room are one
+/// leaf, and the whole mesh in the room is near that leaf.
+const LEAST_FOR_TREES: usize = 64;
+
 /// A mesh and another mesh or a height field.
 #[derive(Copy, Clone)]
 pub(crate) struct MeshPair<'a> {
@@ -67,8 +71,12 @@ impl KnownShape {
 }
 
 impl MeshPair<'_> {
-    fn are_meshes(&self) -> bool {
-        self.shapes.iter().all(|shape| matches!(shape, ShapeView::Mesh(_)))
+    /// Returns true for two meshes of enough triangles. Parry's BVHs serve others.
+    fn needs_trees(&self) -> bool {
+        self.shapes.iter().all(|shape| match shape {
+            ShapeView::Mesh(mesh) => mesh.mesh.indices().len() >= LEAST_FOR_TREES,
+            ShapeView::Field(_) => false,
+        })
     }
 
     /// Returns true if no shape can change while its token stays.
@@ -93,10 +101,10 @@ impl MeshPair<'_> {
         let has_surfaces = self.has_surfaces();
         match shape {
             ShapeView::Mesh(view) => {
-                let are_meshes = self.are_meshes();
-                let is_needed = has_surfaces || are_meshes && self.are_rigid();
-                let surface = is_needed.then(|| known.mesh.acquire(view, are_meshes)).flatten();
-                let tree = surface.as_ref().and_then(LazySurface::tree);
+                let needs_trees = self.needs_trees();
+                let is_needed = has_surfaces || needs_trees && self.are_rigid();
+                let surface = is_needed.then(|| known.mesh.acquire(view, needs_trees)).flatten();
+                let tree = surface.as_ref().and_then(LazySurface::tree).filter(|_| needs_trees);
                 let surface = surface.filter(|_| has_surfaces);
                 (TriangleShape::Mesh(MeshShape { view, surface, room: Room::No }), tree)
             }

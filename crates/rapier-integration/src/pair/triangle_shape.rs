@@ -148,6 +148,17 @@ impl TriangleShape<'_> {
         }
     }
 
+    /// Returns the length of a triangle's side, if equal triangles cover the box around the shape.
+    pub(super) fn triangle_size(&self) -> Real {
+        let count = match self {
+            Self::Mesh(mesh) => mesh.view.mesh.indices().len(),
+            Self::Field(field) => field.field.triangle_count(),
+        };
+        let Vector { x, y, z } = self.bounds().extents();
+        let area = 2.0 * (x * y + y * z + z * x);
+        (2.0 * area / count as Real).sqrt()
+    }
+
     /// Returns the height of a mesh over the middle of its box along a unit direction; 0 for a height field.
     pub(super) fn height(&self, direction: Vector) -> Real {
         let Self::Mesh(mesh) = self else { return 0.0 };

@@ -26,6 +26,14 @@ use crate::mesh::MeshView;
 /// lower: bodies come deeper into others before they meet.
 const REACH: f64 = 0.4;
 
+/// Least reach of fine meshes in filter distances: 0.01 radii. Higher: fine meshes cost more; lower: bodies turn and sink where
+/// they are pressed together.
+const LEAST_REACH: f64 = 0.1;
+
+/// Reach of fine meshes in sizes of their triangles. Higher: each triangle is near more others. Lower: meshes of a few thousand triangles
+/// have contacts late.
+const REACH_PER_TRIANGLE: f64 = 0.25;
+
 /// Greatest product of the numbers of triangles near the other shape with which all pairs are candidates.
 /// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
 const MOST_PAIRS: usize = 1 << 14;
@@ -148,7 +156,10 @@ impl TriangleShapes<'_> {
     /// [far](super::far).
     pub(super) fn reach(&self) -> Real {
         *self.reach.get_or_init(|| {
-            let most = (REACH * self.filter_distance) as Real;
+            let [size1, size2] = self.shapes.each_ref().map(TriangleShape::triangle_size);
+            let [least, most] = [LEAST_REACH, REACH].map(|share| share * self.filter_distance);
+            let most =
+                (REACH_PER_TRIANGLE * f64::from(size1.max(size2))).max(least).min(most) as Real;
             // A prediction distance that is NaN finds nothing.
             let is_less = most < self.pose.prediction && !self.are_few();
             if is_less { most } else { self.pose.prediction }
