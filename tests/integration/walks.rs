@@ -58,6 +58,26 @@ fn contacts_without_trees_are_those_with_trees() {
     assert!(count > 2000, "{count} contacts");
 }
 
+/// A ring of 9600 triangles drifts in a room of 12, both prepared, at a gap of twice the prediction distance. Would catch descents of all
+/// of the ring, as the leaf of four walls has the room in its box.
+#[test]
+fn descents_in_a_room_end_at_its_walls() {
+    let dispatcher = SbbkDispatcher::default();
+    let ring = large(TriMeshFlags::empty());
+    let room = SharedShape::new(shape(&mesh::cuboid(Vec3::splat(8.0), 1)));
+    let _trees = [&ring, &room].map(|shape| dispatcher.prepare_shape(shape).unwrap());
+    let bottom = as_mesh(&ring).local_aabb().mins.y;
+    let mut pair = Pair::<(), ()>::default();
+    for i in 0..60 {
+        let place = Pose::translation(0.003 * i as Real, 0.04 - 8.0 - bottom, 0.0);
+        let query = Question::new(as_mesh(&room), as_mesh(&ring), place);
+        assert!(pair.ask(&dispatcher, &query).manifolds.is_empty(), "{i}");
+    }
+    let internals = dispatcher.stats().internals;
+    let tests = internals.descent.aabb_tests + internals.descent.leaf_pairs;
+    assert!(internals.walks > 0 && tests < 60 * 100, "{internals:?}");
+}
+
 /// Would catch a registered mesh whose edit is not seen, one that stays registered, and another
 /// shape of equal content.
 #[test]
