@@ -93,12 +93,19 @@ impl SbbkDispatcher {
             let shapes = [ShapeView::Mesh(mesh), ShapeView::Field(field)];
             return Some(Kind::Triangles(mesh_place.swap(shapes)));
         }
+        let is_apart = || {
+            let may_skip = is_new && !self.config.leave_solids();
+            may_skip && !is_near(mesh, other, &mesh_place.shape_in_mesh(pos12), prediction)
+        };
+        // To look at all parts takes longer.
+        if kinds.composites && other.as_compound().is_some() && is_apart() {
+            return Some(Kind::Apart);
+        }
         let parts = Parts::of(other).filter(|parts| match parts {
             Parts::One(_) => kinds.convex_shapes,
             Parts::Many(..) => kinds.composites,
         })?;
-        let is_near = || is_near(mesh, other, &mesh_place.shape_in_mesh(pos12), prediction);
-        if is_new && !self.config.leave_solids() && !is_near() {
+        if is_apart() {
             return Some(Kind::Apart);
         }
         let [mesh] = self.view([mesh])?;

@@ -3,15 +3,17 @@
 use std::sync::OnceLock;
 
 use glamx::{DQuat, DVec3, Vec3};
-use parry3d::bounding_volume::Aabb;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
+use parry3d::partitioning::BvhNode;
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{CompositeShape, ConvexPolyhedron, Shape};
-use sbbk_core::traverse::Placement;
+use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
 use super::contact::KeptHull;
 use super::shape::{ConvexShape, Extent, ball_around};
+use crate::mesh::box_of;
 use crate::pair::pose::MeshPlace;
 
 /// The convex shapes that a shape is made of.
@@ -50,7 +52,7 @@ enum Token {
 }
 
 impl<'a> Parts<'a> {
-    /// Returns `None` for shapes with a part that only Parry supports.
+    /// Returns `None` for shapes with a part that only Parry supports. Looks at all parts.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
         if let Some(compound) = shape.as_compound() {
             let parts = compound.shapes();
@@ -83,11 +85,22 @@ impl<'a> Parts<'a> {
         result
     }
 
-    /// Calls `found` with the parts whose boxes intersect a box in the frame of the whole.
-    pub(super) fn intersecting(&self, aabb: &Aabb, found: impl FnMut(u32)) {
+    /// Calls `found` with the parts whose boxes intersect a box in the frame of the whole. Boxes around several parts must also be
+    /// near.
+    pub(super) fn intersecting(
+        &self,
+        aabb: &Aabb,
+        is_near: impl Fn(TestedBox) -> bool,
+        found: impl FnMut(u32),
+    ) {
         match self {
             Self::One(_) => std::iter::once(0).for_each(found),
-            Self::Many(composite, _) => composite.bvh().intersect_aabb(aabb).for_each(found),
+            Self::Many(composite, _) => {
+                let may_have = |node: &BvhNode| {
+                    node.aabb().intersects(aabb) && (node.is_leaf() || is_near(box_of(node)))
+                };
+                composite.bvh().leaves(may_have).for_each(found);
+            }
         }
     }
 }

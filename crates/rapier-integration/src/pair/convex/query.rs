@@ -7,7 +7,7 @@ use std::thread::LocalKey;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use sbbk_core::surface::{Side, SurfaceKind};
-use sbbk_core::traverse::{DescentCounts, SlackLimits};
+use sbbk_core::traverse::{BoxTest, DescentCounts, SlackLimits, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::contact::{PartContact, SAME_WAY, ball_contact, core_contact};
@@ -201,7 +201,7 @@ impl PairQuery for ConvexQuery<'_> {
         found: &mut Vec<Candidate<()>>,
     ) {
         let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
-        parts.intersecting(&self.pair.mesh_box(margin), |index| {
+        parts.intersecting(&self.pair.mesh_box(margin), self.near_mesh(margin), |index| {
             parts.with(index, |part| {
                 let placed = self.placed(index, &part, scratch);
                 triangles_near(placed, part.shape, mesh, margin, &mut *counts, |triangle| {
@@ -299,6 +299,19 @@ impl ConvexQuery<'_> {
             Some(is_covered(self.pair.mesh.mesh, middle) && surface.winding_sign(middle) == Some(1))
         });
         is_within.flatten() == Some(true)
+    }
+
+    /// Returns a test for boxes around some parts: false only if all triangles are farther than `margin`.
+    fn near_mesh(&self, margin: Real) -> impl Fn(TestedBox) -> bool {
+        let ConvexPair { mesh, mesh_place, pose, .. } = self.pair;
+        let [_, placement] = mesh_place.placements(pose);
+        let test = BoxTest::new([mesh.magnitude(), self.part_data.magnitude], placement, margin);
+        // Boxes do not contain half-spaces.
+        let has_half_space = !self.part_data.ball.radius.is_finite();
+        move |parts| {
+            let around = test.of(parts);
+            has_half_space || mesh.near(|node| around.meets(node)).next().is_some()
+        }
     }
 
     /// Returns the contact of a candidate within the prediction distance.

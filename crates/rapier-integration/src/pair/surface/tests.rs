@@ -27,7 +27,7 @@ fn triangles_beside_each_other_pass_by() {
     let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
     let seen = meshes.map(|mesh| ShapeView::Mesh(store.view(mesh).unwrap()));
     let (config, mut counts) = (&SbbkConfig::default(), [0; 2]);
-    for (i, gap) in [(1, 0.03), (2, 0.0), (3, -0.03), (4, -0.06), (5, 0.0)] {
+    for (i, gap) in (1..16).map(|i| (i, [0.0, 0.03, 0.0, -0.03, -0.06][i % 5])) {
         let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);
         let place = turn.normalize() * (2.06 + gap);
         let pose = PairPose::new(&Pose::new(place, turn), 0.08);
@@ -41,7 +41,8 @@ fn triangles_beside_each_other_pass_by() {
             let mut found = Vec::new();
             let scratch = &mut DescentMemory::default();
             let tests = &mut DescentCounts::default();
-            shapes.descend(pose.prediction, tests, scratch, &mut found);
+            let reach = shapes.reach();
+            shapes.descend(1.1 * reach, tests, scratch, &mut found);
             let mut found: Vec<_> = found.iter().map(|of| of.subshapes).collect();
             found.sort_unstable();
             let count = meshes.map(|mesh| mesh.indices().len() as u32);
@@ -51,7 +52,7 @@ fn triangles_beside_each_other_pass_by() {
                 if t1[0].distance(t2[0]) > 1.0 {
                     continue;
                 }
-                let contact = contact(t1, t2, f64::from(pose.prediction));
+                let contact = contact(t1, t2, f64::from(reach));
                 let Some(contact) = contact else { continue };
                 let filter = SurfaceFilter::new(&shapes, pair, &local, true);
                 let may_be_left_out =
