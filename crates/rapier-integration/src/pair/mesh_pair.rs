@@ -25,8 +25,8 @@ use super::triangles::TriangleQuery;
 use crate::SbbkConfig;
 use crate::mesh::{Change, LazySurface, MeshView, PairMesh};
 
-/// Least number of triangles of both meshes for which a pair uses trees. Higher: slower descents. Lower: four walls of a room are one
-/// leaf, and the whole mesh in the room is near that leaf.
+/// Least number of triangles of both meshes for which a pair uses trees. Higher: slower descents. Lower: all of a mesh in a room is near
+/// the box of a leaf with four walls.
 const LEAST_FOR_TREES: usize = 64;
 
 /// A mesh and another mesh or a height field.
