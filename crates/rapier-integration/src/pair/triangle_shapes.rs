@@ -158,8 +158,10 @@ impl TriangleShapes<'_> {
         *self.reach.get_or_init(|| {
             let [size1, size2] = self.shapes.each_ref().map(TriangleShape::triangle_size);
             let [least, most] = [LEAST_REACH, REACH].map(|share| share * self.filter_distance);
-            let most =
-                (REACH_PER_TRIANGLE * f64::from(size1.max(size2))).max(least).min(most) as Real;
+            let of_triangles = (REACH_PER_TRIANGLE * f64::from(size1.max(size2))).max(least);
+            // Else far contacts take more time than a smaller reach saves.
+            let is_much_less = of_triangles <= 0.5 * most;
+            let most = if is_much_less { of_triangles } else { most } as Real;
             // A prediction distance that is NaN finds nothing.
             let is_less = most < self.pose.prediction && !self.are_few();
             if is_less { most } else { self.pose.prediction }
