@@ -93,20 +93,16 @@ impl SbbkDispatcher {
             let shapes = [ShapeView::Mesh(mesh), ShapeView::Field(field)];
             return Some(Kind::Triangles(mesh_place.swap(shapes)));
         }
-        let is_apart = || {
-            let may_skip = is_new && !self.config.leave_solids();
-            may_skip && !is_near(mesh, other, &mesh_place.shape_in_mesh(pos12), prediction)
-        };
-        // To look at all parts takes longer.
-        if kinds.composites && other.as_compound().is_some() && is_apart() {
-            return Some(Kind::Apart);
-        }
         let parts = Parts::of(other).filter(|parts| match parts {
             Parts::One(_) => kinds.convex_shapes,
             Parts::Many(..) => kinds.composites,
         })?;
-        if is_apart() {
+        let is_near = || is_near(mesh, other, &mesh_place.shape_in_mesh(pos12), prediction);
+        if is_new && !self.config.leave_solids() && !is_near() {
             return Some(Kind::Apart);
+        }
+        if !Parts::are_supported(other) {
+            return None;
         }
         let [mesh] = self.view([mesh])?;
         Some(Kind::Convex(mesh, parts, mesh_place))

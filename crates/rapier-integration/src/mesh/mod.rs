@@ -13,7 +13,7 @@ mod view;
 pub(crate) use data::MeshData;
 pub(crate) use neighbours::{MeshFacets, box_between, is_minimum};
 pub(crate) use pair_mesh::{Change, LazySurface, PairMesh};
-pub(crate) use store::{MeshStore, Registered};
+pub(crate) use store::{MeshStore, Registered, use_trees};
 pub(crate) use view::{
     BEHIND, MeshView, TwoMeshes, box_of, ends_within, exit, is_covered, is_near, nearest_triangle,
 };

@@ -290,6 +290,15 @@ impl Contents {
     }
 }
 
+/// Least number of triangles of both meshes for which a pair uses trees. Higher: slower descents. Lower: all of a mesh in a room is near
+/// the box of a leaf with four walls.
+const LEAST_FOR_TREES: usize = 64;
+
+/// True if two meshes have enough triangles for trees. Parry's BVHs serve others.
+pub(crate) fn use_trees(meshes: [&TriMesh; 2]) -> bool {
+    meshes.iter().all(|mesh| mesh.indices().len() >= LEAST_FOR_TREES)
+}
+
 /// True if a mesh of so many triangles may get a tree in a step.
 pub(super) fn is_small(triangle_count: usize) -> bool {
     triangle_count <= BuildBudget::LIMIT as usize

@@ -23,11 +23,7 @@ use super::triangle_shape::{FieldShape, MeshShape, Room, TriangleShape};
 use super::triangle_shapes::{Hint, TriangleShapes, filter_distance};
 use super::triangles::TriangleQuery;
 use crate::SbbkConfig;
-use crate::mesh::{Change, LazySurface, MeshView, PairMesh};
-
-/// Least number of triangles of both meshes for which a pair uses trees. Higher: slower descents. Lower: all of a mesh in a room is near
-/// the box of a leaf with four walls.
-const LEAST_FOR_TREES: usize = 64;
+use crate::mesh::{Change, LazySurface, MeshView, PairMesh, use_trees};
 
 /// A mesh and another mesh or a height field.
 #[derive(Copy, Clone)]
@@ -71,12 +67,10 @@ impl KnownShape {
 }
 
 impl MeshPair<'_> {
-    /// Returns true for two meshes of enough triangles. Parry's BVHs serve others.
+    /// Returns true for two meshes that use trees.
     fn needs_trees(&self) -> bool {
-        self.shapes.iter().all(|shape| match shape {
-            ShapeView::Mesh(mesh) => mesh.mesh.indices().len() >= LEAST_FOR_TREES,
-            ShapeView::Field(_) => false,
-        })
+        let [ShapeView::Mesh(one), ShapeView::Mesh(two)] = &self.shapes else { return false };
+        use_trees([one.mesh, two.mesh])
     }
 
     /// Returns true if no shape can change while its token stays.

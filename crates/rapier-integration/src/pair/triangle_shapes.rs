@@ -34,6 +34,10 @@ const LEAST_REACH: f64 = 0.1;
 /// have contacts late.
 const REACH_PER_TRIANGLE: f64 = 0.25;
 
+/// Share of [`REACH`] above which the triangles do not reduce it. Higher: far contacts take more time than the smaller reach saves.
+/// Lower: fine meshes cost more.
+const MUCH_LESS: f64 = 0.5;
+
 /// Greatest product of the numbers of triangles near the other shape with which all pairs are candidates.
 /// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
 const MOST_PAIRS: usize = 1 << 14;
@@ -156,16 +160,19 @@ impl TriangleShapes<'_> {
     /// [far](super::far).
     pub(super) fn reach(&self) -> Real {
         *self.reach.get_or_init(|| {
-            let [size1, size2] = self.shapes.each_ref().map(TriangleShape::triangle_size);
-            let [least, most] = [LEAST_REACH, REACH].map(|share| share * self.filter_distance);
-            let of_triangles = (REACH_PER_TRIANGLE * f64::from(size1.max(size2))).max(least);
-            // Else far contacts take more time than a smaller reach saves.
-            let is_much_less = of_triangles <= 0.5 * most;
-            let most = if is_much_less { of_triangles } else { most } as Real;
+            let most = self.reach_of_fine() as Real;
             // A prediction distance that is NaN finds nothing.
             let is_less = most < self.pose.prediction && !self.are_few();
             if is_less { most } else { self.pose.prediction }
         })
+    }
+
+    /// Returns the greatest reach of fine meshes.
+    fn reach_of_fine(&self) -> f64 {
+        let [least, most] = [LEAST_REACH, REACH].map(|share| share * self.filter_distance);
+        let [size1, size2] = self.shapes.each_ref().map(TriangleShape::triangle_size);
+        let of_triangles = (REACH_PER_TRIANGLE * f64::from(size1.max(size2))).max(least);
+        if of_triangles <= MUCH_LESS * most { of_triangles } else { most }
     }
 
     /// Returns true if few pairs of triangles may be within the prediction distance.

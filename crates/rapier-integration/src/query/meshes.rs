@@ -17,7 +17,7 @@ use sbbk_core::tree::Tree;
 use super::bvh_search::BvhSearch;
 use super::nonlinear::NonlinearCast;
 use super::{Found, status};
-use crate::mesh::{MeshData, MeshView, is_minimum};
+use crate::mesh::{MeshData, MeshView, is_minimum, use_trees};
 
 thread_local! {
     static SCRATCH: RefCell<SearchScratch> = RefCell::default();
@@ -64,8 +64,16 @@ impl<'a> MeshQuery<'a> {
         BvhSearch { meshes: self.meshes.each_ref(), placement: self.placement }
     }
 
+    /// Returns true if the meshes have enough triangles for trees.
+    fn use_trees(&self) -> bool {
+        use_trees(self.meshes.each_ref().map(|view| view.mesh))
+    }
+
     /// Returns the trees of meshes that are registered, or small and within the budget.
     fn trees(&self) -> Option<Trees> {
+        if !self.use_trees() {
+            return None;
+        }
         let [mesh1, mesh2] = &self.meshes;
         // A large mesh without a tree costs no hash, so the larger one comes first.
         if mesh1.mesh.indices().len() < mesh2.mesh.indices().len() {
@@ -80,8 +88,9 @@ impl<'a> MeshQuery<'a> {
 
     /// Returns triangles that touch, if any do.
     pub(super) fn touching(&self) -> Option<[u32; 2]> {
-        // Hashing a small mesh takes longer than most of these queries.
-        let [mesh1, mesh2] = self.meshes.each_ref().map(MeshView::registered);
+        // Most of these queries take less time than the hash of a small mesh.
+        let registered = |view: &MeshView<'_>| view.registered().filter(|_| self.use_trees());
+        let [mesh1, mesh2] = self.meshes.each_ref().map(registered);
         let pair = if let (Some(tree1), Some(tree2)) = (mesh1, mesh2) {
             search_trees([tree1, tree2], |trees, scratch| meeting(trees, self.placement, scratch))
         } else {

@@ -52,14 +52,13 @@ enum Token {
 }
 
 impl<'a> Parts<'a> {
-    /// Returns `None` for shapes with a part that only Parry supports. Looks at all parts.
+    /// Returns `None` for shapes that only Parry supports. Does not look at the [parts](Self::are_supported) of compounds.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
         if let Some(compound) = shape.as_compound() {
             let parts = compound.shapes();
             let flags = u32::from(compound.flags().bits());
             let token = ListToken::of_parts(parts, flags, compound.local_aabb());
-            let is_supported = parts.iter().all(|(_, part)| ConvexShape::of(&**part).is_some());
-            return is_supported.then_some(Self::Many(compound, token));
+            return Some(Self::Many(compound, token));
         }
         if let Some(polyline) = shape.as_polyline() {
             let flags = u32::from(polyline.flags().bits());
@@ -67,6 +66,14 @@ impl<'a> Parts<'a> {
             return (!polyline.is_deformable()).then_some(Self::Many(polyline, token));
         }
         ConvexShape::of(shape).map(Self::One)
+    }
+
+    /// Returns false for a compound with a part that only Parry supports. Looks at all parts.
+    pub(crate) fn are_supported(shape: &dyn Shape) -> bool {
+        let is_supported = |part: &dyn Shape| ConvexShape::of(part).is_some();
+        shape
+            .as_compound()
+            .is_none_or(|it| it.shapes().iter().all(|(_, part)| is_supported(&**part)))
     }
 
     /// Calls `then` with a part.

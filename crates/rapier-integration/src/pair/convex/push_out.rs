@@ -80,18 +80,15 @@ impl<'q> ConvexQuery<'q> {
         let (mut depths, mut pushed) = std::mem::take(&mut scratch.push_outs);
         depths.extend(contacts.iter().map(|hit| (part_of(hit), hit.1.contact.distance)));
         depths.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        parts.intersecting(
-            &self.pair.mesh_box(0.0),
-            |_| true,
-            |part| {
-                let first = depths.get(depths.partition_point(|(of, _)| *of < part));
-                let own = first.filter(|(of, _)| *of == part);
-                let deepest = own.map_or(f64::INFINITY, |(_, distance)| *distance);
-                let push_out = self.push_out(part, deepest, scratch);
-                let named = |(triangle, contact)| (mesh_place.swap([triangle, part]), contact);
-                pushed.extend(push_out.map(named));
-            },
-        );
+        let anywhere = |_| true;
+        parts.intersecting(&self.pair.mesh_box(0.0), anywhere, |part| {
+            let first = depths.get(depths.partition_point(|(of, _)| *of < part));
+            let own = first.filter(|(of, _)| *of == part);
+            let deepest = own.map_or(f64::INFINITY, |(_, distance)| *distance);
+            let push_out = self.push_out(part, deepest, scratch);
+            let named = |(triangle, contact)| (mesh_place.swap([triangle, part]), contact);
+            pushed.extend(push_out.map(named));
+        });
         pushed.sort_unstable_by_key(part_of);
         contacts.retain(|hit| pushed.binary_search_by_key(&part_of(hit), part_of).is_err());
         contacts.append(&mut pushed);
