@@ -34,9 +34,9 @@ const LEAST_REACH: f64 = 0.1;
 /// have contacts late.
 const REACH_PER_TRIANGLE: f64 = 0.25;
 
-/// Share of [`REACH`] above which the triangles do not reduce it. Higher: far contacts take more time than the smaller reach saves.
+/// Share of the reach above which triangles do not reduce it. Higher: far contacts take more time than the smaller reach saves.
 /// Lower: fine meshes cost more.
-const MUCH_LESS: f64 = 0.5;
+const MUCH_LESS: f64 = 0.75;
 
 /// Greatest product of the numbers of triangles near the other shape with which all pairs are candidates.
 /// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
@@ -172,7 +172,8 @@ impl TriangleShapes<'_> {
         let [least, most] = [LEAST_REACH, REACH].map(|share| share * self.filter_distance);
         let [size1, size2] = self.shapes.each_ref().map(TriangleShape::triangle_size);
         let of_triangles = (REACH_PER_TRIANGLE * f64::from(size1.max(size2))).max(least);
-        if of_triangles <= MUCH_LESS * most { of_triangles } else { most }
+        let otherwise = most.min(f64::from(self.pose.prediction));
+        if of_triangles <= MUCH_LESS * otherwise { of_triangles } else { most }
     }
 
     /// Returns true if few pairs of triangles may be within the prediction distance.
