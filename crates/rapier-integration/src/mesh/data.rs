@@ -15,7 +15,7 @@ use super::neighbours::MeshRays;
 #[derive(Default)]
 pub(crate) struct MeshData {
     surface: OnceLock<Surface>,
-    /// Kind of a mesh whose surface is not computed.
+    /// Kind of a mesh that is too large to analyse as a whole.
     kind: OnceLock<SurfaceKind>,
     /// Flags of each triangle of the surface.
     flags: OnceLock<Box<[TriangleFlags]>>,
@@ -87,11 +87,9 @@ impl MeshData {
         self.declared_kind().or_else(computed)
     }
 
-    /// Returns the kind of `mesh`, whose data this must be. Takes up to 4096 rays the first time, and
-    /// more at walls, unless the surface is computed.
-    #[inline]
-    pub(super) fn kind_of(&self, mesh: &TriMesh) -> SurfaceKind {
-        self.kind().unwrap_or_else(|| *self.kind.get_or_init(|| kind(&MeshRays(mesh))))
+    /// Returns the kind of `mesh`, whose data this must be, from up to 4096 rays, and more at walls.
+    pub(super) fn kind_by_rays(&self, mesh: &TriMesh) -> SurfaceKind {
+        *self.kind.get_or_init(|| kind(&MeshRays(mesh)))
     }
 
     #[inline]

@@ -176,8 +176,7 @@ impl<'a> LazySurface<'a> {
     /// Returns the kind of the mesh, and true if a user declared it.
     #[inline]
     fn declared_kind(&self) -> (SurfaceKind, bool) {
-        let data = self.data();
-        (data.kind_of(self.view.mesh), data.declared_kind().is_some())
+        (self.kind(), self.data().declared_kind().is_some())
     }
 
     /// Returns the surface around a triangle. A double counts as a wall within, so it has no contacts.
@@ -233,9 +232,14 @@ impl<'a> LazySurface<'a> {
         self.data.get()?.surface().filter(|surface| surface.has_doubles())
     }
 
-    /// Returns the kind of the mesh.
+    /// Returns the kind of the mesh. Analyses the mesh if it is analysed as a whole.
+    #[inline]
     pub(crate) fn kind(&self) -> SurfaceKind {
-        self.data().kind_of(self.view.mesh)
+        let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
+        data.kind().unwrap_or_else(|| match self.near {
+            Some(_) => data.kind_by_rays(mesh),
+            None => store.surface(mesh, data).kind(),
+        })
     }
 }
 

@@ -427,10 +427,10 @@ mod tests {
         let (store, mesh) = (store(usize::MAX), ball(1.0));
         let data = store.entry(&mesh);
         assert_eq!(data.kind(), None);
-        assert_eq!(data.kind_of(&mesh), SurfaceKind::Solid);
+        assert_eq!(data.kind_by_rays(&mesh), SurfaceKind::Solid);
         for kind in [SurfaceKind::Sheet, SurfaceKind::InsideOut, SurfaceKind::Solid] {
             data.declare_kind(kind);
-            assert_eq!((data.kind_of(&mesh), data.kind()), (kind, Some(kind)));
+            assert_eq!(data.kind(), Some(kind));
         }
     }
 

@@ -28,7 +28,7 @@ use glamx::{DVec3, Vec3};
 use rustc_hash::FxHashMap;
 
 use crate::collections::CompactIndices;
-use twins::TriangleSet;
+use twins::{Components, TriangleSet};
 
 /// Greatest number of triangles of a mesh whose kind follows from its edges if these are all paired. Rays also take its closed
 /// components as they are. Larger meshes take rays that need no paired edges.
@@ -46,9 +46,8 @@ pub struct Surface {
     twins: CompactIndices,
     hubs: FxHashMap<twins::Place, (u32, u32)>,
     has_small_components: bool,
-    /// Triangles of components with unpaired edges. `None` above [`PAIRED`] triangles, where no
-    /// component is known to be closed.
-    open: Option<TriangleSet>,
+    /// `None` above [`PAIRED`] triangles, where no component is known to be closed.
+    components: Option<Components>,
     doubles: TriangleSet,
     kind: SurfaceKind,
 }
@@ -61,18 +60,17 @@ impl Surface {
     /// # Panics
     /// If a triangle has an index beyond the vertices.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
-        let twins::Adjacency { twins, is_closed, hubs, has_small_components, open, doubles } =
+        let twins::Adjacency { twins, hubs, has_small_components, components, doubles } =
             twins::find(vertices, triangles);
-        let is_closed = is_closed && triangles.len() <= PAIRED;
         let memo = &PlaceMemo::default();
-        let mesh = sides::RayMesh::new(rays, open.as_ref(), memo, sides::WallLimit::MESH);
-        let kind = sides::of_samples(&mesh, is_closed);
-        Self { twins, hubs, has_small_components, open, doubles, kind }
+        let mesh = sides::RayMesh::new(rays, components.as_ref(), memo, sides::WallLimit::MESH);
+        let kind = sides::of_samples(&mesh);
+        Self { twins, hubs, has_small_components, components, doubles, kind }
     }
 
     /// Finds the side of a triangle as [`side`](side()) does. Takes less time, as rays count closed components as they are.
     pub fn side(&self, triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-        sides::RayMesh::new(triangles, self.open.as_ref(), memo, sides::WallLimit::SIDE)
+        sides::RayMesh::new(triangles, self.components.as_ref(), memo, sides::WallLimit::SIDE)
             .side(triangle)
     }
 
@@ -84,7 +82,7 @@ impl Surface {
         point: DVec3,
         memo: &PlaceMemo,
     ) -> Option<i32> {
-        sides::RayMesh::new(triangles, self.open.as_ref(), memo, sides::WallLimit::SIDE)
+        sides::RayMesh::new(triangles, self.components.as_ref(), memo, sides::WallLimit::SIDE)
             .winding_sign(point)
     }
 
@@ -131,7 +129,7 @@ impl Surface {
         let hubs = size_of::<(twins::Place, (u32, u32))>() * self.hubs.capacity();
         size_of::<Self>()
             + self.twins.bytes()
-            + self.open.as_ref().map_or(0, TriangleSet::bytes)
+            + self.components.as_ref().map_or(0, |components| components.open.bytes())
             + self.doubles.bytes()
             + hubs
     }

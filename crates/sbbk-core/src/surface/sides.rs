@@ -15,7 +15,7 @@ use glamx::DVec3;
 use super::rays::{Hit, Hits, RayTriangles, TIE, direction, hit, sequence, shortest, winding};
 use super::slopes::PlaceMemo;
 use super::triangle::{area_vector, depth_within, longest_side, meeting};
-use super::twins::TriangleSet;
+use super::twins::Components;
 
 /// The kind of surface that a mesh forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -151,8 +151,8 @@ const WORK_OF_RAY: i64 = 16;
 /// The triangles of a mesh, with the components and walls that are known.
 pub(super) struct RayMesh<'a, T> {
     pub(super) triangles: &'a T,
-    /// Triangles of open components. `None`: no component is known to be closed.
-    pub(super) open: Option<&'a TriangleSet>,
+    /// `None`: no component is known to be closed.
+    components: Option<&'a Components>,
     /// Walls that rays have met.
     pub(super) memo: &'a PlaceMemo,
     /// Triangles that rays have come near.
@@ -165,12 +165,12 @@ pub(super) struct RayMesh<'a, T> {
 impl<'a, T: RayTriangles> RayMesh<'a, T> {
     pub(super) fn new(
         triangles: &'a T,
-        open: Option<&'a TriangleSet>,
+        components: Option<&'a Components>,
         memo: &'a PlaceMemo,
         limit: WallLimit,
     ) -> Self {
         let (work, left) = (Cell::new(0), Cell::new(limit.work));
-        Self { triangles, open, memo, work, left, limit }
+        Self { triangles, components, memo, work, left, limit }
     }
 
     fn is_exhausted(&self) -> bool {
@@ -243,14 +243,15 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         !is_wall
     }
 
-    /// True if all components are known to be closed.
-    fn is_closed(&self) -> bool {
-        self.open.is_some_and(TriangleSet::is_empty)
+    /// True if the body is behind all triangles that have nothing in front, as winding numbers change by one at a triangle. Sheets
+    /// of two closed layers at one place are no such meshes.
+    fn has_body_behind(&self) -> bool {
+        self.components.is_some_and(|known| known.is_manifold)
     }
 
     /// True if the component of a triangle is known to be closed.
     fn is_of_closed(&self, triangle: u32) -> bool {
-        self.open.is_some_and(|open| !open.contains(triangle))
+        self.components.is_some_and(|known| !known.open.contains(triangle))
     }
 
     /// Returns true if part of a triangle may be outside of the body, though its middle is within. `is_inner_at` tells
@@ -301,12 +302,13 @@ const CONSIDERED: u32 = 1 << 14;
 /// Classifies a mesh by up to 4096 rays, and more at walls.
 pub fn kind(triangles: &impl RayTriangles) -> SurfaceKind {
     let memo = &PlaceMemo::default();
-    of_samples(&RayMesh::new(triangles, None, memo, WallLimit::MESH), false)
+    of_samples(&RayMesh::new(triangles, None, memo, WallLimit::MESH))
 }
 
-/// Classifies a mesh. `is_closed`: each edge has as many half-edges one way as back, so there are no holes.
-pub(super) fn of_samples(mesh: &RayMesh<impl RayTriangles>, is_closed: bool) -> SurfaceKind {
+/// Classifies a mesh. Closed meshes have no holes.
+pub(super) fn of_samples(mesh: &RayMesh<impl RayTriangles>) -> SurfaceKind {
     let triangles = mesh.triangles;
+    let is_closed = mesh.components.is_some_and(Components::are_closed);
     let step = triangles.count().div_ceil(CONSIDERED).max(1);
     let areas = (0..triangles.count() / step).scan(0.0, |sum, i| {
         let area = area_vector(&triangles.corners(step * i)).length();
@@ -407,8 +409,7 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
     /// What the rays find if only triangles count for which `counts` is true.
     fn side(&self, counts: impl Fn(u32) -> bool) -> Side {
         let Some(front) = self.winding(0, &counts) else { return Side::Outer };
-        // One triangle lies between the rays, so the body is behind.
-        if front == 0 && self.mesh.is_closed() {
+        if front == 0 && self.mesh.has_body_behind() {
             return Side::Outer;
         }
         let is_behind = self.winding(1, &counts).is_none_or(|back| back >= 1);

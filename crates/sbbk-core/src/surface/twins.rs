@@ -19,16 +19,36 @@ const CROWD: u32 = 1024;
 pub(super) struct Adjacency {
     /// The twin of each half-edge, if there is exactly one besides doubles. Doubles have none.
     pub(super) twins: CompactIndices,
-    /// True if each edge has as many half-edges one way as back.
-    pub(super) is_closed: bool,
     /// Size and first triangle of each crowd, by the vertex where the crowd meets.
     pub(super) hubs: FxHashMap<Place, (u32, u32)>,
     /// True if closed components have few triangles on average.
     pub(super) has_small_components: bool,
-    /// The triangles of components with an edge that has no twin. `None` for a mesh of more than [`PAIRED`] triangles.
-    pub(super) open: Option<TriangleSet>,
+    /// `None` for a mesh of more than [`PAIRED`] triangles.
+    pub(super) components: Option<Components>,
     /// Triangles with the corners of an earlier one, in either winding, and slivers.
     pub(super) doubles: TriangleSet,
+}
+
+/// Tells which components of a mesh are closed. Triangles that share an edge are of one component.
+#[derive(Clone, Debug)]
+pub(super) struct Components {
+    /// The triangles of components with a [border](Edge::is_border).
+    pub(super) open: TriangleSet,
+    /// True if each edge has one half-edge each way.
+    pub(super) is_manifold: bool,
+}
+
+impl Components {
+    /// The components of `count` triangles.
+    fn new(edges: &Edges, count: usize) -> Self {
+        let is_manifold = edges.all.iter().all(|edge| edge.counts == [1, 1]);
+        Self { open: open_parts(edges, count), is_manifold }
+    }
+
+    /// True if all components are closed.
+    pub(super) fn are_closed(&self) -> bool {
+        self.open.is_empty()
+    }
 }
 
 /// A set of triangles. Takes no memory if it is empty.
@@ -74,15 +94,15 @@ fn insert(bits: &mut [u64], triangle: usize) -> bool {
     is_new
 }
 
-/// Returns the triangles of components with an edge that has no twin.
-fn open_parts(twins: &[Option<u32>]) -> TriangleSet {
-    TriangleSet::new(twins.len() / 3, |bits| {
-        let is_border = |half_edge: &usize| twins[*half_edge].is_none();
-        let mut reached: Vec<usize> = (0..twins.len()).filter(is_border).map(|at| at / 3).collect();
-        while let Some(triangle) = reached.pop() {
+/// Returns the triangles of components with a border, among `count` triangles.
+fn open_parts(Edges { all, around, .. }: &Edges, count: usize) -> TriangleSet {
+    TriangleSet::new(count, |bits| {
+        let at_borders = all.iter().filter(|edge| edge.is_border()).flat_map(|edge| edge.last);
+        let mut reached: Vec<u32> = at_borders.filter(|&half_edge| half_edge != NONE).collect();
+        while let Some(half_edge) = reached.pop() {
+            let triangle = half_edge as usize / 3;
             if insert(bits, triangle) {
-                let twins = twins[3 * triangle..][..3].iter().flatten();
-                reached.extend(twins.map(|&twin| twin as usize / 3));
+                reached.extend(&around[3 * triangle..][..3]);
             }
         }
     })
@@ -193,30 +213,30 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
     let edges_of = |of: &dyn Fn(u32) -> bool| {
         edges(&welded, &valence, numbered.clone().filter(|(triangle, _)| of(*triangle))).0
     };
-    let mut all = edges_of(&|_| true);
-    let slivers = Slivers::find(vertices, &welded, triangles, &all);
+    let mut edges = edges_of(&|_| true);
+    let slivers = Slivers::find(vertices, &welded, triangles, &edges.all);
     let hangs = |triangle: u32| slivers.hanging.contains(&triangle);
     if !slivers.hanging.is_empty() {
-        all = edges_of(&|triangle| !hangs(triangle));
+        edges = edges_of(&|triangle| !hangs(triangle));
     }
     // A closed component without handles has two more vertices and triangles than edges.
     let vertex_count = valence.iter().filter(|&&count| count > 0).count();
-    let parts = (vertex_count + triangles.len()).saturating_sub(all.len()) / 2;
+    let parts = (vertex_count + triangles.len()).saturating_sub(edges.all.len()) / 2;
     let has_small_components = parts > 1 && parts * SMALL_COMPONENT >= triangles.len();
-    let is_closed = all.iter().all(|edge| edge.counts[0] == edge.counts[1]);
-    let mut twins = paired(&all, triangles.len());
+    let mut twins = paired(&edges.all, triangles.len());
     let hubs = hubs(vertices, &welded, &valence, triangles);
-    let open = (triangles.len() <= PAIRED).then(|| open_parts(&twins));
+    let count = triangles.len();
+    let components = (count <= PAIRED).then(|| Components::new(&edges, count));
     let mut doubles = doubles(&welded, triangles, &twins);
     if !doubles.is_empty() {
         let single = edges_of(&|triangle| !doubles.contains(triangle) && !hangs(triangle));
-        twins = paired(&single, triangles.len());
+        twins = paired(&single.all, triangles.len());
     }
     if !slivers.all.is_empty() {
         doubles = doubles.with(&slivers.all, triangles.len());
     }
     let twins = CompactIndices::new(twins.into_iter());
-    Adjacency { twins, is_closed, hubs, has_small_components, open, doubles }
+    Adjacency { twins, hubs, has_small_components, components, doubles }
 }
 
 /// Returns the twin of each half-edge of `count` triangles.
@@ -269,7 +289,22 @@ struct Edge {
     counts: [u32; 2],
 }
 
-/// All edges in the order of their first half-edges, and the number of list steps.
+impl Edge {
+    /// True if more half-edges run one way than back. A component without a border has a whole winding number at each point.
+    fn is_border(&self) -> bool {
+        self.counts[0] != self.counts[1]
+    }
+}
+
+/// The edges of a mesh.
+struct Edges {
+    /// In the order of their first half-edges.
+    all: Vec<Edge>,
+    /// For each half-edge the next one of the same edge. The last leads to the first.
+    around: Vec<u32>,
+}
+
+/// Finds all edges. Also returns the number of list steps.
 ///
 /// Each edge is listed at that end which fewer triangles share. An edge of a planar
 /// graph then takes a constant number of list steps at any valence.
@@ -277,34 +312,39 @@ fn edges(
     welded: &[u32],
     valence: &[u32],
     triangles: impl Iterator<Item = (u32, [u32; 3])>,
-) -> (Vec<Edge>, usize) {
+) -> (Edges, usize) {
     let mut first = vec![NONE; welded.len()];
     // A closed mesh has one and a half edges a triangle.
-    let mut edges = Vec::<Edge>::with_capacity(triangles.size_hint().0 * 3 / 2 + 16);
+    let mut all = Vec::<Edge>::with_capacity(triangles.size_hint().0 * 3 / 2 + 16);
+    let mut around = Vec::<u32>::with_capacity(triangles.size_hint().0 * 3);
     let mut steps = 0;
     for (triangle, corners) in triangles {
         let [a, b, c] = corners.map(|corner| welded[corner as usize]);
-        for (i, [start, end]) in (0..).zip([[a, b], [b, c], [c, a]]) {
+        around.extend(around.len() as u32..3 * triangle + 3);
+        for (half_edge, [start, end]) in (3 * triangle..).zip([[a, b], [b, c], [c, a]]) {
             let way = usize::from(start > end);
             let ends = if way == 0 { [start, end] } else { [end, start] };
             let [low, high] = ends.map(|end| end as usize);
             let head = &mut first[if valence[low] <= valence[high] { low } else { high }];
             let mut at = *head;
-            while at != NONE && edges[at as usize].ends != ends {
-                at = edges[at as usize].next;
+            while at != NONE && all[at as usize].ends != ends {
+                at = all[at as usize].next;
                 steps += 1;
             }
             if at == NONE {
-                at = edges.len() as u32;
-                edges.push(Edge { ends, next: *head, last: [NONE; 2], counts: [0; 2] });
+                at = all.len() as u32;
+                all.push(Edge { ends, next: *head, last: [NONE; 2], counts: [0; 2] });
                 *head = at;
             }
-            let edge = &mut edges[at as usize];
-            edge.last[way] = 3 * triangle + i;
+            let edge = &mut all[at as usize];
+            if let Some(other) = edge.last.into_iter().find(|&other| other != NONE) {
+                around.swap(half_edge as usize, other as usize);
+            }
+            edge.last[way] = half_edge;
             edge.counts[way] += 1;
         }
     }
-    (edges, steps)
+    (Edges { all, around }, steps)
 }
 
 /// For each vertex the first one at its place.

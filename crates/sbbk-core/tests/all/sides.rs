@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crate::support::{Random, Soup, bumpy_ball};
 use crate::surface::shapes::{cube, mapped, together};
 use glamx::{DVec3, Vec3};
-use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, Surface, side};
+use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, Surface, SurfaceKind, side};
 
 /// The middle and the half-lengths of a box.
 type Cuboid = [Vec3; 2];
@@ -77,6 +77,35 @@ fn walls_within(is_lattice: bool, is_analysed: bool) -> [[u32; 2]; 2] {
         }
     }
     counts
+}
+
+/// Four walls of a house, and six slabs around a room. Boxes that meet have flush faces and an edge in common. Would catch
+/// components that count as open, as four triangles share an edge.
+#[test]
+fn flush_boxes_with_a_common_edge_have_faces() {
+    let boxes_around = |axes: &[usize], half: Vec3, thickness: f32| -> Vec<Cuboid> {
+        let sides = axes.iter().flat_map(|&axis| [(axis, 1.0), (axis, -1.0)]);
+        let cuboid = |(axis, side): (usize, f32)| {
+            let (mut middle, mut half) = (Vec3::ZERO, half);
+            middle[axis] = side * (half[axis] - thickness);
+            half[axis] = thickness;
+            [middle, half]
+        };
+        sides.map(cuboid).collect()
+    };
+    for thickness in [0.05, 0.1, 0.25, 0.5] {
+        let walls = boxes_around(&[0, 2], Vec3::new(2.5, 1.5, 2.5), thickness);
+        let slabs = boxes_around(&[0, 1, 2], Vec3::splat(2.5), thickness);
+        for boxes in [walls, slabs] {
+            let (soup, memo) = (soup(&boxes), PlaceMemo::default());
+            let surface = soup.surface();
+            assert_eq!(surface.kind(), SurfaceKind::Solid);
+            for triangle in 0..soup.count() {
+                let side = surface.side(&soup, triangle, &memo);
+                assert_eq!(side, Side::Outer, "triangle {triangle}, {thickness} thick");
+            }
+        }
+    }
 }
 
 /// Would catch a floor that is a wall within, as a pillar stands on its middle.
