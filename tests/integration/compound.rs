@@ -1,4 +1,5 @@
 use std::collections::{BTreeMap, BTreeSet};
+use std::f32::consts::FRAC_PI_2;
 
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
@@ -8,7 +9,7 @@ use sbbk_testkit::mesh;
 
 use crate::support::{
     Dispatcher, Manifold, Pair, Question, counting, direction, distance, every, per_triangle,
-    rotation, sequence, shape, touching_shapes,
+    rotation, sequence, shape, touching_shapes, triangles,
 };
 use crate::worlds::dumbbells;
 
@@ -186,4 +187,42 @@ fn far_parts_keep_their_contacts_while_a_body_turns() {
         }
     }
     assert!(touched > 100, "{touched}");
+}
+
+/// Cubes look the same after quarter turns. Would catch normals of parts with different axes that are compared.
+#[test]
+fn parts_touch_a_mesh_alike_whichever_axes_they_have() {
+    let table = |turns: [Quat; 2]| {
+        let leg = |i: usize| {
+            let at = Vec3::Z * [0.8, -0.8][i];
+            (Pose::from_parts(at, turns[i]), SharedShape::cuboid(0.2, 0.2, 0.2))
+        };
+        Compound::new((0..2).map(leg).collect())
+    };
+    let quarters = [Vec3::X, Vec3::Y, Vec3::Z]
+        .map(|axis| [1.0, 2.0, 3.0].map(|turns| Quat::from_axis_angle(axis, turns * FRAC_PI_2)));
+    let plain = table([Quat::IDENTITY; 2]);
+    let box_with_wall = mesh::walled_box(Vec3::new(2.0, 0.5, 2.0), 4);
+    let mut random = Rand32::new(4);
+    for ground in [mesh::floor(4.0, 8), box_with_wall] {
+        let (top, ground) = (ground.bounds().maxs.y, shape(&ground));
+        for i in 0..300 {
+            let at = |random: &mut Rand32| 2.2 * (2.0 * random.rand_float() - 1.0);
+            let at = Vec3::new(at(&mut random), top + 0.193, at(&mut random));
+            let turn = if i % 2 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
+            let turned = table([Quat::IDENTITY, quarters[i % 3][i / 3 % 3]]);
+            let contacts = |compound: &Compound| {
+                let pose = Pose::from_parts(at, turn);
+                let found = Question::new(&ground, compound, pose).fresh(&every());
+                let of = |m: &Manifold| (triangles(m), distance(m), m.local_n1);
+                found.iter().map(of).collect::<Vec<_>>()
+            };
+            let [expected, found] = [&plain, &turned].map(contacts);
+            let is_same = expected.len() == found.len()
+                && expected.iter().zip(&found).all(|(a, b)| {
+                    a.0 == b.0 && (a.1 - b.1).abs() < 1e-4 && a.2.distance(b.2) < 1e-3
+                });
+            assert!(is_same, "{i} at {at}: {expected:?}\n{found:?}");
+        }
+    }
 }

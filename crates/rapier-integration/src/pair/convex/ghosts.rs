@@ -34,7 +34,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use glamx::Vec3;
+use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 
@@ -61,12 +61,14 @@ pub(crate) struct GhostContacts {
     pub(super) on_faces: Vec<u32>,
     /// Contacts at borders of the mesh that keep their normals.
     pub(super) borders: Vec<u32>,
-    /// Contacts at borders, along the normals of the faces.
-    pub(super) upright: Vec<(u32, ConvexContact)>,
+    /// Contacts at borders, along the normals of the faces. Also has these normals in the axes of the mesh.
+    pub(super) upright: Vec<(u32, ConvexContact, DVec3)>,
     /// Contacts that share a corner with the one at hand.
     pub(super) nearby: Vec<u32>,
-    /// Contacts of other triangles at the point of the one at hand.
-    pub(super) strays: Vec<u32>,
+    /// Contacts in the [strays](Strays) of corners, then of the last contact at an edge.
+    strays: Vec<u32>,
+    /// Number of strays of corners.
+    kept_strays: u32,
     /// Contacts of walls at whose foot the shape stands, along the normals of the walls.
     pub(super) walls: Vec<(u32, ConvexContact)>,
 }
@@ -78,10 +80,21 @@ struct Corner {
     nearest: u32,
     /// A contact at this corner, and the result of `is_passed` for it.
     passed: Option<(u32, bool)>,
-    /// The stray with the least distance, or the contact that asked first; and whether a stray shares no corner.
-    stray: Option<(u32, bool)>,
+    /// Strays of the first contact at this corner that had to know.
+    strays: Option<Strays>,
     /// True if a triangle has an edge here that no other contact has.
     is_border: Option<bool>,
+}
+
+/// Contacts of other triangles at the point of a contact.
+#[derive(Copy, Clone)]
+struct Strays {
+    /// Start and end in [`GhostContacts::strays`].
+    range: [u32; 2],
+    /// The stray with the least distance, or the contact itself.
+    nearest: u32,
+    /// True if a stray shares no corner with the contact.
+    are_apart: bool,
 }
 
 /// Returns a hash of a part and a corner. Corners that differ in x or y alone never collide.
@@ -140,21 +153,23 @@ impl GhostContacts {
             let size = own.on_triangle.abs().max_element() + own.distance.abs();
             let is_nearer = |other: u32| distance(other) < own.distance - EQUAL * size;
             let mut nearest = self.nearest(contacts, contact, *feature);
-            let seeks_strays = !is_nearer(nearest);
-            if seeks_strays {
-                let (stray, has_strays) = self.stray(contacts, contact, &mut find_strays);
-                nearest = if distance(stray) < distance(nearest) { stray } else { nearest };
-                if !has_strays && self.is_border(contact, *feature) {
+            let mut range = [0; 2];
+            if !is_nearer(nearest) {
+                let strays = self.strays_of(contacts, contact, &mut find_strays);
+                let is_nearest = distance(strays.nearest) < distance(nearest);
+                nearest = if is_nearest { strays.nearest } else { nearest };
+                if !strays.are_apart && self.is_border(contact, *feature) {
                     self.borders.push(contact);
                 }
+                range = strays.range;
             }
-            let find_wall = || self.wall(contacts, contact, seeks_strays, &mut find_wall);
+            let find_wall = || self.wall(contacts, contact, range, &mut find_wall);
             if let Some(wall) = may_have_walls.then(find_wall).flatten() {
                 self.walls.push((contact, wall));
             } else if is_nearer(nearest) {
                 self.sources[contact as usize] = nearest;
             } else if own.distance < 0.0
-                && self.is_passed(contacts, contact, *feature, &mut extends_beyond)
+                && self.is_passed(contacts, contact, range, &mut extends_beyond)
             {
                 self.on_faces.push(contact);
             }
@@ -168,12 +183,11 @@ impl GhostContacts {
         &self,
         contacts: &[(I, PartContact)],
         contact: u32,
-        has_strays: bool,
+        strays: [u32; 2],
         find_wall: &mut impl FnMut(&I, &(I, PartContact)) -> Option<ConvexContact>,
     ) -> Option<ConvexContact> {
         let (of, PartContact { contact: own, feature, .. }) = &contacts[contact as usize];
-        let strays = if has_strays { &self.strays[..] } else { &[] };
-        let others = self.at_feature(contact, *feature).chain(strays.iter().copied());
+        let others = self.at_feature(contact, *feature).chain(self.strays_in(strays));
         let others = others.take(CROWD).map(|other| &contacts[other as usize]);
         let mut floors = others.filter(|(_, it)| it.contact.normal.dot(own.normal) < 0.0);
         floors.find_map(|floor| find_wall(of, floor))
@@ -194,6 +208,7 @@ impl GhostContacts {
     /// Forgets the last contacts.
     fn begin<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [u64; 3]) {
         self.index(contacts, keys);
+        self.kept_strays = 0;
         self.walls.clear();
         self.on_faces.clear();
         self.borders.clear();
@@ -218,7 +233,13 @@ impl GhostContacts {
         for (start, &entry) in (0..).zip(&*entries) {
             let nearest = contact_of(entry);
             if last_key.replace(entry >> 64) != Some(entry >> 64) {
-                corners.push(Corner { start, nearest, passed: None, stray: None, is_border: None });
+                corners.push(Corner {
+                    start,
+                    nearest,
+                    passed: None,
+                    strays: None,
+                    is_border: None,
+                });
             }
             let corner = corners.len() - 1;
             triangles[nearest as usize][usize::from(entry as u8)] = corner as u32;
@@ -255,35 +276,42 @@ impl GhostContacts {
         self.at_feature(contact, feature).fold(contact, nearer)
     }
 
-    /// Lists the strays of a contact. Returns the one with the least distance, or the contact, and true
-    /// if one shares no corner with it. All contacts at a vertex have the same strays.
-    fn stray<I>(
+    /// Finds the strays of a contact. All contacts at a vertex have the same strays.
+    fn strays_of<I>(
         &mut self,
         contacts: &[(I, PartContact)],
         contact: u32,
         find_strays: &mut impl FnMut(&(I, PartContact), &mut Vec<u32>),
-    ) -> (u32, bool) {
+    ) -> Strays {
         let hit = &contacts[contact as usize];
         let at = match hit.1.feature {
             Feature::Vertex(i) => Some(self.triangles[contact as usize][usize::from(i)]),
             _ => None,
         };
-        if let Some(stray) = at.and_then(|corner| self.corners[corner as usize].stray) {
-            return stray;
+        if let Some(strays) = at.and_then(|corner| self.corners[corner as usize].strays) {
+            return strays;
         }
-        self.strays.clear();
+        let start = self.kept_strays;
+        self.strays.truncate(start as usize);
         find_strays(hit, &mut self.strays);
+        let range = [start, self.strays.len() as u32];
         let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
         let nearer = |a: u32, b: u32| if distance(b) < distance(a) { b } else { a };
-        let nearest = self.strays.iter().copied().fold(contact, nearer);
         let ends = ends(hit.1.feature).map(|end| self.triangles[contact as usize][end]);
         let is_apart =
-            |&other: &u32| !ends.iter().any(|end| self.triangles[other as usize].contains(end));
-        let stray = (nearest, self.strays.iter().any(is_apart));
+            |other: u32| !ends.iter().any(|end| self.triangles[other as usize].contains(end));
+        let nearest = self.strays_in(range).fold(contact, nearer);
+        let strays = Strays { range, nearest, are_apart: self.strays_in(range).any(is_apart) };
         if let Some(corner) = at {
-            self.corners[corner as usize].stray = Some(stray);
+            self.corners[corner as usize].strays = Some(strays);
+            self.kept_strays = range[1];
         }
-        stray
+        strays
+    }
+
+    /// Returns the contacts in the range of [`Strays`].
+    fn strays_in(&self, [start, end]: [u32; 2]) -> impl Iterator<Item = u32> {
+        self.strays[start as usize..end as usize].iter().copied()
     }
 
     /// Returns true if an edge is of one triangle only, or a vertex at the end of such an edge.
@@ -312,11 +340,11 @@ impl GhostContacts {
         &mut self,
         contacts: &[(I, PartContact)],
         contact: u32,
-        feature: Feature,
+        strays: [u32; 2],
         extends_beyond: &mut impl FnMut(&I, &ConvexContact) -> bool,
     ) -> bool {
+        let PartContact { contact: ref own, feature, .. } = contacts[contact as usize].1;
         let [one, _] = ends(feature).map(|end| self.triangles[contact as usize][end]);
-        let own = &contacts[contact as usize].1.contact;
         // All triangles at a vertex that is deepest have the same contact.
         if let (Feature::Vertex(_), Some((other, is_passed))) =
             (feature, self.corners[one as usize].passed)
@@ -328,7 +356,7 @@ impl GhostContacts {
         }
         let is_passed = self
             .at_feature(contact, feature)
-            .chain(self.strays.iter().copied())
+            .chain(self.strays_in(strays))
             .any(|other| extends_beyond(&contacts[other as usize].0, own));
         if let Feature::Vertex(_) = feature {
             self.corners[one as usize].passed = Some((contact, is_passed));
@@ -357,8 +385,6 @@ impl GhostContacts {
 #[cfg(test)]
 mod tests {
     use std::cell::Cell;
-
-    use glamx::DVec3;
 
     use super::super::contact::NormalSource;
     use super::*;
@@ -412,5 +438,25 @@ mod tests {
             ghosts.list_nearby(1);
             assert_eq!(ghosts.nearby, [1, 0, 2, 3]);
         }
+    }
+    /// Two contacts at one vertex, and one at an edge between them in the list. Catches strays of the edge that count for the vertex.
+    #[test]
+    fn strays_belong_to_their_contact() {
+        let at = |feature| contact(-0.1, feature);
+        let mut contacts: Vec<_> =
+            [Feature::Vertex(0), Feature::Edge(0), Feature::Vertex(0), Feature::Face]
+                .into_iter()
+                .map(at)
+                .enumerate()
+                .collect();
+        contacts[2].1.contact.normal = DVec3::X;
+        let mut ghosts = GhostContacts::default();
+        let keys = |&i: &usize| strip([0, 10, 0, 20][i]);
+        let extends_beyond = |&i: &usize, _: &ConvexContact| i == 3;
+        let strays = |(i, _): &(usize, PartContact), strays: &mut Vec<u32>| {
+            strays.extend((*i == 1).then_some(3));
+        };
+        ghosts.find(&contacts, keys, extends_beyond, strays, |_, _| None);
+        assert_eq!(ghosts.on_faces, [1]);
     }
 }

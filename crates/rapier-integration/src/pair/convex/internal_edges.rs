@@ -128,11 +128,12 @@ impl ConvexQuery<'_> {
                 let (of, hit) = &contacts[border as usize];
                 let upright =
                     self.with_pair(*of, scratch, |pair| pair.upright_at_border(&hit.contact));
-                Some((border, upright.flatten()?))
+                let upright = upright.flatten()?;
+                Some((border, upright, self.normal_in_mesh(*of, &upright, scratch)))
             },
         ));
-        if lead_one_way(upright.iter().map(|(_, contact)| contact.normal)) {
-            for &(border, contact) in &*upright {
+        if lead_one_way(upright.iter().map(|(.., normal)| *normal)) {
+            for &(border, contact, _) in &*upright {
                 let hit = &mut contacts[border as usize].1;
                 *hit = PartContact { contact, source: NormalSource::Border, ..*hit };
             }

@@ -4,8 +4,10 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::thread::LocalKey;
 
+use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
+use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::{Side, SurfaceKind};
 use sbbk_core::traverse::{BoxTest, DescentCounts, SlackLimits, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
@@ -271,10 +273,12 @@ impl ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
     ) {
         let Some(surface) = &self.surface else { return };
-        let normal = |(_, contact): &([u32; 2], PartContact)| contact.contact.normal;
-        let first = contacts.first().map(normal);
-        let differs = |hit: &_| first.is_some_and(|first| first.dot(normal(hit)) < SAME_WAY);
-        if contacts.iter().any(differs) && surface.kind() != SurfaceKind::Sheet {
+        let mut normals =
+            contacts.iter().map(|(of, hit)| self.normal_in_mesh(*of, &hit.contact, scratch));
+        let Some(first) = normals.next() else { return };
+        if normals.any(|normal| first.dot(normal) < SAME_WAY)
+            && surface.kind() != SurfaceKind::Sheet
+        {
             let mut last = None;
             contacts.retain(|(of, _)| {
                 let [triangle, part] = self.pair.mesh_place.swap(*of);
@@ -285,6 +289,21 @@ impl ConvexQuery<'_> {
                 }
             });
         }
+    }
+
+    /// Returns the normal of a contact in the axes of the mesh.
+    pub(super) fn normal_in_mesh(
+        &self,
+        subshapes: [u32; 2],
+        contact: &ConvexContact,
+        scratch: &mut ConvexScratch,
+    ) -> DVec3 {
+        let [_, part] = self.pair.mesh_place.swap(subshapes);
+        let turned = self
+            .pair
+            .parts
+            .with(part, |shape| self.placed(part, &shape, scratch).directions(contact.normal)[0]);
+        turned.unwrap_or(contact.normal)
     }
 
     /// Returns true if the middle of a part is in a solid.
