@@ -10,7 +10,9 @@ use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{ContactManifold, QueryDispatcher, TrackedContact};
-use rapier3d::parry::shape::{PackedFeatureId, Shape, SharedShape, TriMeshFlags};
+use rapier3d::parry::shape::{
+    Cone, Cuboid, Cylinder, PackedFeatureId, Shape, SharedShape, TriMeshFlags,
+};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::heightfield::terrain::rolling;
@@ -403,5 +405,51 @@ fn normals_of_any_length_make_patches() {
         let pose = Pose::from_parts(x * Vec3::X, turn);
         let found = fresh(&dispatcher, &Question::new(&bare, &cones, pose));
         assert!(!found.is_empty() && found.iter().all(|manifold| !manifold.points.is_empty()));
+    }
+}
+
+/// Bodies that stand on a flat mesh. The caps of Parry's meshes are fans around one vertex. Would catch points of contacts with a
+/// common deepest point: a body would stand on one side of its base.
+#[test]
+fn patches_reach_as_far_around_a_body_as_all_contacts() {
+    let corners = (0..9).flat_map(|i| {
+        let (sin, cos) = (TAU * i as Real / 9.0).sin_cos();
+        [-0.4, 0.4].map(|y| Vec3::new(0.4 * cos, y, 0.4 * sin))
+    });
+    let hull = SharedShape::convex_hull(&corners.collect::<Vec<_>>()).unwrap();
+    let of = |(vertices, triangles)| SharedShape::trimesh(vertices, triangles).unwrap();
+    let bodies = [
+        ("cone", SharedShape::cone(0.4, 0.4)),
+        ("cylinder", SharedShape::cylinder(0.4, 0.4)),
+        ("cuboid", SharedShape::cuboid(0.3, 0.4, 0.4)),
+        ("hull", hull),
+        ("mesh of a cone", of(Cone::new(0.4, 0.4).to_trimesh(20))),
+        ("mesh of a cylinder", of(Cylinder::new(0.4, 0.4).to_trimesh(20))),
+        ("mesh of a cuboid", of(Cuboid::new(Vec3::splat(0.4)).to_trimesh())),
+    ];
+    let mut random = Rand32::new(11);
+    let [patches, every] = [ContactDetail::Patches, ContactDetail::Every].map(detailed);
+    for (name, body) in &bodies {
+        let mut least: Real = 1.0;
+        for i in 0..200 {
+            let floor = shape(&mesh::floor(8.0, 2 + i % 12));
+            let mut within = |size: Real| size * (2.0 * random.rand_float() - 1.0);
+            let at = Vec3::new(within(3.0), 0.3995 + within(0.001), within(3.0));
+            let turn = Quat::from_rotation_y(within(3.0));
+            let tilt = Quat::from_scaled_axis(Vec3::new(within(1.0), 0.0, within(1.0)) * 1e-4);
+            let question = Question::new(&floor, &**body, Pose::from_parts(at, tilt * turn));
+            let [patches, every] = [&patches, &every].map(|detail| fresh(detail, &question));
+            for i in 0..24 {
+                let (sin, cos) = (TAU * i as Real / 24.0).sin_cos();
+                let reach = |all: &[Manifold]| {
+                    let points = all.iter().flat_map(|m| &m.points);
+                    let along =
+                        |p: &TrackedContact<u32>| (p.local_p1 - at).dot(Vec3::new(cos, 0.0, sin));
+                    points.map(along).fold(Real::NEG_INFINITY, Real::max)
+                };
+                least = least.min(reach(&patches) / reach(&every));
+            }
+        }
+        assert!(least > 0.6, "{name}: {least}");
     }
 }

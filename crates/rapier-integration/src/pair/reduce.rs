@@ -1,13 +1,13 @@
-//! Contact reduction: which contacts make patches, before their points are made.
+//! Contact reduction: chooses the contacts of patches before their points are made, and then points.
 //!
 //! Contacts are grouped by normal. Each group keeps its deepest contact and up to three that span
 //! the contact area. Contacts as deep but far from that area make patches of their own. Within the area
 //! a contact adds nothing: the velocities of a rigid body along the normal are linear there.
+//! Wide contacts stay, as one point tells little about them. Then their points are divided in the same way.
 
 use std::cmp::Ordering;
 
-use arrayvec::ArrayVec;
-use glamx::Vec3;
+use glamx::{Vec2, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::TrackedContact;
 
@@ -114,6 +114,8 @@ pub(crate) struct ContactSummary {
     pub(super) normal: Vec3,
     pub(super) point: Vec3,
     pub(super) distance: Real,
+    /// Distance from `point` that no point of the contact exceeds.
+    pub(super) reach: Real,
 }
 
 impl ContactSummary {
@@ -123,14 +125,19 @@ impl ContactSummary {
     }
 }
 
+/// Returns the length of the longest side of a triangle.
+pub(super) fn longest_side([a, b, c]: [Vec3; 3]) -> Real {
+    a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt()
+}
+
 /// Memory for contact reduction.
 #[derive(Default)]
 pub(crate) struct Reduction {
     pub(super) members: Vec<Member>,
-    /// First contacts of patches, by part, by direction and then by place.
+    /// First contacts of patches, by part and by direction.
     seeds: Vec<ContactSummary>,
     pub(super) places: Vec<(Vec3, Real)>,
-    pub(super) beyond: Beyond,
+    pub(super) outermost: Outermost,
     /// Points of the chosen contacts of a patch.
     pub(super) points: Vec<PatchPoint>,
 }
@@ -176,7 +183,7 @@ impl Reduction {
         self.members.clear();
         self.members.extend(members);
         self.group_by_normal(plan);
-        self.split_by_place(plan);
+        self.keep_outermost(plan);
     }
 
     fn group_by_normal(&mut self, plan: PatchPlan) {
@@ -204,35 +211,24 @@ impl Reduction {
         members.sort_unstable_by(|a, b| a.patch.cmp(&b.patch).then_with(|| by_depth(a, b)));
     }
 
-    fn split_by_place(&mut self, plan: PatchPlan) {
-        let Self { members, seeds, places, beyond, .. } = self;
-        seeds.clear();
-        let mut count = 0;
+    /// Keeps the outermost contacts of each patch. Also keeps contacts that may reach far out of the hull of the outermost ones.
+    fn keep_outermost(&mut self, plan: PatchPlan) {
+        let Self { members, places, outermost, .. } = self;
         for members in members.chunk_by_mut(|a, b| a.patch == b.patch) {
+            if members.len() <= MOST_POINTS {
+                continue;
+            }
             places.clear();
             places.extend(members.iter().map(|Member { summary, .. }| summary.place()));
-            let ContactSummary { normal, distance: deepest, .. } = members[0].summary;
-            let chosen = plan.outermost(places, normal, beyond);
-            let first = seeds.len();
-            for (i, Member { summary, patch, .. }) in members.iter_mut().enumerate() {
-                let mut is_needless = || {
-                    summary.distance - deepest > plan.equal_depth
-                        || beyond.squares()[i] <= plan.size * plan.size
-                };
-                *patch = if chosen.contains(&i) {
-                    count
-                } else if is_needless() {
-                    NO_PATCH
-                } else {
-                    let is_there =
-                        |seed: &ContactSummary| seed.point.distance(summary.point) <= plan.size;
-                    count + 1 + seed_of(seeds, first, is_there, summary)
-                };
+            outermost.choose(plan, places, members[0].summary.normal);
+            for (i, member) in members.iter_mut().enumerate() {
+                let excess = member.summary.reach - plan.size;
+                let is_needed = outermost.chosen.contains(&i)
+                    || excess > 0.0 && !outermost.is_inside_by(i, excess);
+                member.patch = if is_needed { member.patch } else { NO_PATCH };
             }
-            count += 1 + (seeds.len() - first) as u32;
         }
         members.retain(|member| member.patch != NO_PATCH);
-        members.sort_unstable_by(|a, b| a.patch.cmp(&b.patch).then_with(|| by_depth(a, b)));
     }
 }
 
@@ -250,104 +246,48 @@ fn seed_of(
     place as u32
 }
 
-/// Indices of points.
-pub(super) type Chosen = ArrayVec<usize, MOST_POINTS>;
-
-/// Memory for the distances of points from the convex hull of the chosen ones, seen along a normal.
-#[derive(Default)]
-pub(super) struct Beyond {
-    /// The points, seen along the normal.
-    flat: Vec<Vec3>,
-    /// Squares of the distances.
-    squares: Vec<Real>,
-    corners: ArrayVec<Vec3, MOST_POINTS>,
-    /// The chosen points that the distances are from. The last one may be missing.
-    known: usize,
-    /// Unit vector across the contacts.
-    normal: Vec3,
-}
-
-impl Beyond {
-    fn begin(&mut self, points: &[(Vec3, Real)], normal: Vec3) {
-        let flat = |&(point, _): &(Vec3, Real)| point - normal.dot(point) * normal;
-        self.flat.clear();
-        self.flat.extend(points.iter().map(flat));
-        self.squares.clear();
-        self.squares.resize(points.len(), Real::INFINITY);
-        self.corners.clear();
-        (self.known, self.normal) = (0, normal);
-    }
-
-    fn add(&mut self, index: usize) {
-        self.corners.push(self.flat[index]);
-    }
-
-    /// Returns the squares of the distances of all points.
-    fn squares(&mut self) -> &[Real] {
-        for (i, &corner) in self.corners.iter().enumerate().skip(self.known) {
-            let before = &self.corners[..i];
-            for (&point, square) in self.flat.iter().zip(&mut self.squares) {
-                if *square > 0.0 {
-                    *square = square.min(beyond(point, corner, before, self.normal));
-                }
-            }
-        }
-        self.known = self.corners.len();
-        &self.squares
-    }
-}
-
-/// Returns the square of the distance of a point from the segments and triangles between a corner and others.
-fn beyond(point: Vec3, corner: Vec3, others: &[Vec3], normal: Vec3) -> Real {
-    let side = |a: Vec3, b: Vec3| (b - a).cross(point - a).dot(normal);
-    let mut least = corner.distance_squared(point);
-    for (i, &other) in others.iter().enumerate() {
-        least = least.min(to_segment(corner, other, point));
-        let is_inside = |third: &Vec3| {
-            let sides = [side(corner, other), side(other, *third), side(*third, corner)];
-            sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
-        };
-        if others[..i].iter().any(is_inside) {
-            return 0.0;
-        }
-    }
-    least
-}
-
-/// Returns the square of the distance of a point from a segment.
-fn to_segment(a: Vec3, b: Vec3, point: Vec3) -> Real {
-    let (along, way) = (b - a, point - a);
-    let length = along.length_squared();
-    let share = if length > 0.0 { along.dot(way) / length } else { 0.0 };
-    (way - along * share.clamp(0.0, 1.0)).length_squared()
-}
-
 /// Least distance of a chosen point from the hull, in distances between the first two points. Higher: narrow
 /// sides lose corners; lower: rounding adds points to a line.
 const LINE: Real = 1.0e-3;
 
-impl PatchPlan {
-    /// Returns up to four of `points`, which have distances. The first one is deepest. The body reaches the
+/// The outermost ones of some points, with memory for their choice.
+#[derive(Default)]
+pub(super) struct Outermost {
+    /// The points, seen along the normal.
+    flat: Vec<Vec2>,
+    /// Squares of the distances from the hull.
+    squares: Vec<Real>,
+    /// Convex hull of the chosen points, counterclockwise.
+    hull: Vec<Vec2>,
+    chosen: Vec<usize>,
+}
+
+impl Outermost {
+    /// Chooses the outermost of `points`, which have distances. The first one must be deepest. The body reaches the
     /// others after the least turn. They are far outside the convex hull, seen along `normal`, and hardly above the first one,
-    /// compared with its depth.
-    pub(super) fn outermost(
-        self,
+    /// compared with its depth. More than four are chosen if others as deep are far from these.
+    pub(super) fn choose(
+        &mut self,
+        plan: PatchPlan,
         points: &[(Vec3, Real)],
         normal: Vec3,
-        beyond: &mut Beyond,
-    ) -> Chosen {
+    ) -> &[usize] {
+        self.chosen.clear();
         if points.len() <= MOST_POINTS {
-            return (0..points.len()).collect();
+            self.chosen.extend(0..points.len());
+            return &self.chosen;
         }
-        beyond.begin(points, normal);
-        let (mut chosen, (_, deepest)) = (Chosen::from_iter([0]), points[0]);
-        let equal_depth = self.equal_depth + SUNK * (-deepest).max(0.0);
-        beyond.add(0);
+        self.begin(points, normal);
+        let deepest = points[0].1;
+        let equal_depth = plan.equal_depth + SUNK * (-deepest).max(0.0);
         let mut least = 0.0;
-        while !chosen.is_full() {
-            let weighed = points.iter().zip(beyond.squares()).map(|((_, distance), square)| {
-                let hover = (distance - deepest).max(0.0) / equal_depth;
-                square / (1.0 + hover).powi(2)
+        loop {
+            let is_full = self.chosen.len() >= MOST_POINTS;
+            let weighed = points.iter().zip(&self.squares).map(|((_, distance), &square)| {
+                let hover = distance - deepest;
+                let is_needed =
+                    !is_full || hover <= plan.equal_depth && square > plan.size * plan.size;
+                if is_needed { square / (1.0 + hover.max(0.0) / equal_depth).powi(2) } else { 0.0 }
             });
             let farthest = |most: (usize, Real), next: (usize, Real)| {
                 if next.1 > most.1 { next } else { most }
@@ -356,20 +296,88 @@ impl PatchPlan {
             if next == 0 {
                 break;
             }
-            chosen.push(next);
-            beyond.add(next);
+            self.add(next);
             if least == 0.0 {
                 least = LINE * LINE * square;
             }
         }
         // Points about as far from the others must not change places from step to step.
-        if let [first, second, third, _] = beyond.corners[..]
-            && (second - first).cross(third - first).dot(normal) > 0.0
-        {
-            chosen.swap(2, 3);
+        if let [first, second, third, _, ..] = self.chosen[..] {
+            let [first, second, third] = [first, second, third].map(|i| self.flat[i]);
+            if (second - first).perp_dot(third - first) > 0.0 {
+                self.chosen.swap(2, 3);
+            }
         }
-        chosen
+        &self.chosen
     }
+
+    /// Chooses the first point.
+    fn begin(&mut self, points: &[(Vec3, Real)], normal: Vec3) {
+        let (x, y) = normal.any_orthonormal_pair();
+        let flat = |&(point, _): &(Vec3, Real)| Vec2::new(x.dot(point), y.dot(point));
+        self.flat.clear();
+        self.flat.extend(points.iter().map(flat));
+        self.squares.clear();
+        self.squares.resize(points.len(), Real::INFINITY);
+        self.hull.clear();
+        self.add(0);
+    }
+
+    /// Chooses a point outside of the hull.
+    fn add(&mut self, index: usize) {
+        let Self { flat, squares, hull, chosen } = self;
+        let corner = flat[index];
+        chosen.push(index);
+        add_corner(hull, corner);
+        let (before, after) = (hull[hull.len().max(2) - 2], hull[0]);
+        for (&point, square) in flat.iter().zip(squares) {
+            if *square > 0.0 {
+                let to_sides =
+                    to_segment(before, corner, point).min(to_segment(corner, after, point));
+                *square = if is_inside(hull, point, 0.0) { 0.0 } else { square.min(to_sides) };
+            }
+        }
+    }
+
+    /// Returns true if a point is farther than a distance from the border of the hull, and inside.
+    fn is_inside_by(&self, index: usize, distance: Real) -> bool {
+        is_inside(&self.hull, self.flat[index], distance)
+    }
+}
+
+/// Adds a corner at the end of a convex hull. Removes the corners that are now inside.
+fn add_corner(hull: &mut Vec<Vec2>, corner: Vec2) {
+    let count = hull.len();
+    let is_seen = |start: Vec2, end: Vec2| (end - start).perp_dot(corner - start) < 0.0;
+    let is_side_seen = |i: usize| is_seen(hull[i % count], hull[(i + 1) % count]);
+    // A corner on the line of a side may see none.
+    if let Some(first) = (0..count).find(|&i| is_side_seen(i) && !is_side_seen(i + count - 1)) {
+        hull.rotate_left((first + 1) % count);
+    }
+    while hull.len() > 2 && is_seen(hull[0], hull[1]) {
+        hull.remove(0);
+    }
+    hull.push(corner);
+}
+
+/// Returns true if a point is inside of a convex hull, and farther than a distance from its border.
+fn is_inside(hull: &[Vec2], point: Vec2, distance: Real) -> bool {
+    let mut last = hull[hull.len() - 1];
+    hull.len() > 2
+        && hull.iter().all(|&corner| {
+            let start = std::mem::replace(&mut last, corner);
+            let side = corner - start;
+            let height = side.perp_dot(point - start);
+            height > 0.0 && height * height > distance * distance * side.length_squared()
+        })
+}
+
+/// Returns the square of the distance of a point from a segment.
+fn to_segment(a: Vec2, b: Vec2, point: Vec2) -> Real {
+    let (along, way) = (b - a, point - a);
+    let length = along.length_squared();
+    let share = if length > 0.0 { along.dot(way) / length } else { 0.0 };
+    (way - along * share.clamp(0.0, 1.0)).length_squared()
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ use super::islands::{Crossing, Overlap, OverlapIslands};
 use super::passed::PassedTriangles;
 use super::pose::{Moving, PairPose};
 use super::query::{ContactList, ContactPoints, Limits, Memory, PairQuery};
-use super::reduce::{ContactSummary, PatchPlan};
+use super::reduce::{ContactSummary, PatchPlan, longest_side};
 use super::state::Candidate;
 use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict};
 use super::triangle_contacts::{constrained_normal, contact_of, write_points};
@@ -207,7 +207,8 @@ impl PairQuery for TriangleQuery<'_> {
         points: &mut ContactPoints,
     ) -> Option<ContactSummary> {
         let (pair, TriangleSurfaceContact { contact, source }) = hit;
-        let [origin, ..] = self.shapes[0].corners(pair[0])?;
+        let corners @ [origin, ..] = self.shapes[0].corners(pair[0])?;
+        let reach = longest_side(corners).min(longest_side(self.shapes[1].corners(pair[1])?));
         let of_triangles = self.shapes.cones(*pair);
         let cones = source.cones(&of_triangles);
         let normal = constrained_normal(contact, cones, &self.pose().pos12)?;
@@ -218,7 +219,7 @@ impl PairQuery for TriangleQuery<'_> {
             self.points(hit, scratch, points);
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
         }
-        Some(ContactSummary { part: 0, normal, point, distance })
+        Some(ContactSummary { part: 0, normal, point, distance, reach })
     }
 
     #[inline(always)]

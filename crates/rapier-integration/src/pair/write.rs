@@ -14,7 +14,7 @@ use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
 use super::query::{ContactPoints, PairQuery, QueryMemory};
-use super::reduce::{MOST_POINTS, PatchPlan, PatchPoint, Reduction};
+use super::reduce::{MOST_POINTS, Member, PatchPlan, PatchPoint, Reduction};
 use super::state::HighWaterMark;
 
 /// Spare manifolds that a thread keeps, of some 500 bytes each. Higher: more memory; lower: allocations
@@ -219,13 +219,10 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         let summary = |contact| query.summary(contact, scratch, points);
         reduction.reduce(plan, contacts.iter().map(summary));
         self.list_old_points();
-        let Reduction { members, places, points: patch_points, beyond, .. } = reduction;
+        let Reduction { members, places, points: patch_points, outermost, .. } = reduction;
         for members in members.chunk_by(|a, b| a.patch == b.patch) {
-            places.clear();
-            places.extend(members.iter().map(|member| member.summary.place()));
             patch_points.clear();
-            for member in plan.outermost(places, members[0].summary.normal, beyond) {
-                let contact = members[member].contact;
+            for &Member { contact, .. } in members {
                 let of = &contacts[contact as usize];
                 query.points(of, scratch, points);
                 patch_points.extend(patch_points_of(points, of.0, contact));
@@ -238,9 +235,14 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
             patch_points.swap(0, deepest);
             places.clear();
             places.extend(patch_points.iter().map(|point| (point.point.local_p1, distance(point))));
-            let mut chosen = plan.outermost(places, patch_points[0].normals[0], beyond);
-            while !chosen.is_empty() {
-                self.write_patch(plan, patch_points, &mut chosen, |contact| contacts[contact].0);
+            let chosen = outermost.choose(plan, places, patch_points[0].normals[0]);
+            for chosen in chosen.chunks(MOST_POINTS) {
+                let mut chosen: ArrayVec<_, MOST_POINTS> = chosen.iter().copied().collect();
+                while !chosen.is_empty() {
+                    self.write_patch(plan, patch_points, &mut chosen, |contact| {
+                        contacts[contact].0
+                    });
+                }
             }
         }
         for rest in 0..self.manifolds.len() {

@@ -16,8 +16,7 @@ use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, is_over, ray_length};
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
-use crate::pair::reduce::ContactSummary;
-use crate::pair::reduce::PatchPlan;
+use crate::pair::reduce::{ContactSummary, PatchPlan, longest_side};
 
 /// Least cosine between the normals of a contact and of a face whose normal it takes. Higher: shapes deep in a mesh stumble
 /// over internal edges. Lower: shapes half within a wall are pushed through it.
@@ -190,7 +189,8 @@ impl TrianglePartPair<'_> {
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
         }
         let part = if self.part.pose.is_some() { self.placed.index } else { 0 };
-        Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance })
+        let reach = longest_side(self.corners).min(2.0 * self.placed.extent.ball().radius);
+        Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance, reach })
     }
 
     /// Returns unit vectors from each shape to the other, in its frame, in the order of the pair.

@@ -19,7 +19,7 @@ const PLAN: PatchPlan = PatchPlan {
 
 fn summary(x: Real, distance: Real) -> ContactSummary {
     let point = Vec3::new(x, 0.0, 0.0);
-    ContactSummary { part: 0, normal: Vec3::Y, point, distance }
+    ContactSummary { part: 0, normal: Vec3::Y, point, distance, reach: 0.0 }
 }
 
 /// Would catch patches that mix parts, directions or places. A contact that carries must not be replaced by one that hovers.
@@ -29,17 +29,18 @@ fn contacts_join_the_patch_of_their_part_direction_and_place() {
     // Contacts between the ends of a row have no patch.
     assert_eq!(patches(&row, PLAN), [(0, 0), (5, 0)]);
     assert_eq!(patches(&row, PatchPlan::ALL_FAR), [(0, 0), (5, 0)]);
-    // Four corners of an octagon make a patch. Each other one is far from these, and stays in order.
+    // Four corners of an octagon make a patch. Each other one is far from these, and stays once.
     let corners = (0..16).map(|i| {
         let (sin, cos) = (TAU * i as Real / 8.0).sin_cos();
         ContactSummary { point: 4.0 * Vec3::new(cos, 0.0, sin), ..summary(0.0, -0.1) }
     });
     let corners: Vec<ContactSummary> = corners.collect();
-    let square = [0, 2, 4, 6].map(|i| (i, 0));
-    let others = [1, 3, 5, 7].into_iter().zip(1..).flat_map(|(i, n)| [(i, n), (8 + i, n)]);
-    let all: Vec<_> = square.into_iter().chain(others).collect();
-    assert_eq!(patches(&corners, PLAN), all);
-    assert_eq!(patches(&corners, PatchPlan { size: 1.5, ..PLAN }), square);
+    let chosen = patches(&corners, PLAN);
+    let mut places: Vec<u32> = chosen.iter().map(|(contact, _)| contact % 8).collect();
+    places.sort_unstable();
+    assert_eq!(places, [0, 1, 2, 3, 4, 5, 6, 7]);
+    assert!(chosen.iter().all(|(_, patch)| *patch == 0));
+    assert_eq!(patches(&corners, PatchPlan { size: 1.5, ..PLAN }), [0, 2, 4, 6].map(|i| (i, 0)));
     // Touching contacts are chosen before contacts that hover.
     let mut hanging = row.map(|row| ContactSummary { distance: 0.1, ..row });
     hanging[1].distance = -0.1;
@@ -84,9 +85,9 @@ fn the_outermost_points_that_carry_are_chosen_once() {
         places.iter().map(|&[x, z, distance]| (Vec3::new(x, 0.0, z), distance)).collect()
     };
     let chosen = |points: &[(Vec3, Real)]| {
-        let mut chosen = PLAN.outermost(points, Vec3::Y, &mut Beyond::default());
+        let mut chosen = Outermost::default().choose(PLAN, points, Vec3::Y).to_vec();
         chosen.sort_unstable();
-        chosen.to_vec()
+        chosen
     };
     let mut points = at(&[
         [0.0, 0.0, 0.0],
