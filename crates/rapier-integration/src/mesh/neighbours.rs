@@ -14,7 +14,7 @@ use sbbk_core::surface::{
     hangs, is_flat, minimum_cones, place, side, sides, winding_sign,
 };
 
-use super::flags::TriangleFlags;
+use super::data::TriangleFlags;
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]
@@ -29,6 +29,16 @@ pub(crate) struct MeshFacets<'a> {
 pub(super) enum Twins<'a> {
     All(&'a Surface, &'a [TriangleFlags]),
     Near(&'a Neighbours),
+}
+
+impl<'a> Twins<'a> {
+    /// Returns the surface of a mesh that is analysed as a whole.
+    fn surface(self) -> Option<&'a Surface> {
+        match self {
+            Self::All(surface, _) => Some(surface),
+            Self::Near(_) => None,
+        }
+    }
 }
 
 /// Distance to other parts, in radii of a part, that leaves it alone. Higher: parts near each other take
@@ -50,11 +60,8 @@ impl MeshFacets<'_> {
             let first = self.first_of_crowd(triangle).filter(|&first| first != triangle);
             let is_face = first.is_some_and(|first| self.side(first) == Side::Outer);
             let rays = MeshRays(self.mesh);
-            let side = || match self.twins {
-                Twins::All(surface, _) => surface.side(&rays, triangle, self.memo),
-                Twins::Near(_) => side(&rays, triangle, self.memo),
-            };
-            let side = if is_face { Side::Outer } else { side() };
+            let found = || side(&rays, self.twins.surface(), triangle, self.memo);
+            let side = if is_face { Side::Outer } else { found() };
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
         })
@@ -62,11 +69,8 @@ impl MeshFacets<'_> {
 
     /// Returns the sign of the winding number of a closed mesh around a point, if two rays agree.
     pub(super) fn winding_sign(self, point: Vector) -> Option<i32> {
-        let (rays, point) = (MeshRays(self.mesh), point.as_dvec3());
-        match self.twins {
-            Twins::All(surface, _) => surface.winding_sign(&rays, point, self.memo),
-            Twins::Near(_) => winding_sign(&rays, point, self.memo),
-        }
+        let rays = MeshRays(self.mesh);
+        winding_sign(&rays, self.twins.surface(), point.as_dvec3(), self.memo)
     }
 
     /// Returns true if an earlier triangle has the same corners.
@@ -445,7 +449,7 @@ mod tests {
             let facets = MeshFacets { mesh: &mesh, twins, memo };
             for triangle in 0..flags.len() as u32 {
                 let found = facets.side(triangle);
-                let by_rays = surface.side(&MeshRays(&mesh), triangle, memo);
+                let by_rays = side(&MeshRays(&mesh), Some(&surface), triangle, memo);
                 assert_eq!(found, by_rays, "{triangle} of {size}");
                 counts[found as usize] += 1;
             }

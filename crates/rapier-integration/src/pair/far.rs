@@ -55,7 +55,7 @@ impl TriangleShapes<'_> {
             if contact.distance <= reach {
                 return;
             }
-            let verdict = self.with_filter(pair, may_pass, |filter| filter.apply(contact, clipped));
+            let verdict = self.with_filter(pair, |filter| filter.apply(contact, may_pass, clipped));
             if let Some(Verdict::Contact(mut hit, upright)) = verdict {
                 hit.contact = upright.filter(|_| lead_one_way).unwrap_or(hit.contact);
                 contacts.push((pair, hit));
@@ -86,7 +86,7 @@ impl TriangleShapes<'_> {
             let is_minimum = |(pair, hit): &TriangleHit| {
                 let is_minimum =
                     |filter: &SurfaceFilter<'_>| filter.is_minimum_of_larger(&hit.contact);
-                self.with_filter(*pair, true, is_minimum) == Some(true)
+                self.with_filter(*pair, is_minimum) == Some(true)
             };
             if contacts.iter().any(is_minimum) {
                 contacts.retain(is_minimum);
@@ -96,8 +96,7 @@ impl TriangleShapes<'_> {
         directions.clear();
         for (pair, TriangleSurfaceContact { contact, .. }) in &*contacts {
             let is_minimum = |filter: &SurfaceFilter<'_>| filter.is_local_minimum(contact);
-            let counts =
-                || is_near(contact) || self.with_filter(*pair, true, is_minimum) == Some(true);
+            let counts = || is_near(contact) || self.with_filter(*pair, is_minimum) == Some(true);
             // Some hundreds of such directions fit on a sphere.
             if !has_like(directions, contact.normal, ONE_DIRECTION) && counts() {
                 directions.push(contact.normal);
@@ -108,7 +107,7 @@ impl TriangleShapes<'_> {
             let leads_inside = |filter: &SurfaceFilter<'_>| filter.leads_inside(contact);
             is_near(contact)
                 || has_like(directions, contact.normal, SAME_DIRECTION)
-                    && !(is_overlap && self.with_filter(*pair, true, leads_inside) == Some(true))
+                    && !(is_overlap && self.with_filter(*pair, leads_inside) == Some(true))
         });
     }
 
@@ -210,7 +209,7 @@ impl TriangleShapes<'_> {
     }
 
     /// Returns the contact of two triangles, if that is within a limit.
-    fn nearest_points(&self, pair: [u32; 2], limit: f64) -> Option<TriangleHit> {
+    pub(super) fn nearest_points(&self, pair: [u32; 2], limit: f64) -> Option<TriangleHit> {
         let local = self.local(pair)?;
         let [t1, t2] = &local.corners;
         Some((pair, TriangleSurfaceContact::of_triangles(contact(t1, t2, limit)?)))

@@ -9,6 +9,12 @@
 //!
 //! A sheet is a solid for a [thin](THIN) body in front of it.
 //!
+//! A body that slides from one floor onto the next has sunk in a little, and would run into the border of the
+//! next floor. So a border is met along the normal of its face by a body that is all on one side of the face.
+//!
+//! The rim of an open box has borders, too. A lid just fits between its walls: it is on the inner side
+//! of each. But the normals of walls lead against each other, so no way is left, and the rim carries the lid.
+//!
 //! Crossing surfaces never stay without a contact: an island without one gets the best there is
 //! ([`OverlapIslands`](super::islands::OverlapIslands)).
 
@@ -57,22 +63,21 @@ pub(super) enum Verdict {
     None,
     /// Edges or vertices that may pass each other. They have a contact only if nothing is nearer.
     Passing,
-    /// A contact and, at a [border](super::borders), the one along the normal of the face.
+    /// A contact and, at a [border](lead_one_way), the one along the normal of the face.
     Contact(TriangleSurfaceContact, Option<TriangleContact>),
     /// The surfaces cross. A contact may still be rejected by the second pass.
     Crossing(Crossing, Option<TriangleSurfaceContact>),
 }
 
 impl TriangleShapes<'_> {
-    /// Calls `then` with the filter of two triangles, if these exist. `may_pass`: their edges and vertices may pass each other.
+    /// Calls `then` with the filter of two triangles, if these exist and have surfaces.
     pub(super) fn with_filter<T>(
         &self,
         pair: [u32; 2],
-        may_pass: bool,
         then: impl FnOnce(&SurfaceFilter<'_>) -> T,
     ) -> Option<T> {
         let local = self.local(pair)?;
-        Some(then(&SurfaceFilter::new(self, pair, &local, may_pass)))
+        Some(then(&SurfaceFilter::new(self, pair, &local)?))
     }
 }
 
@@ -82,46 +87,42 @@ pub(super) struct SurfaceFilter<'a> {
     pub(super) pair: [u32; 2],
     /// The triangles.
     local: &'a TrianglePair,
-    /// Surfaces of both shapes, if known.
-    surfaces: [Option<Around<ShapeFacets<'a>>>; 2],
-    /// True if edges and vertices may pass each other.
-    may_pass: bool,
+    surfaces: [Around<ShapeFacets<'a>>; 2],
 }
 
 impl<'a> SurfaceFilter<'a> {
-    /// `local` are the triangles of `pair`, whose edges and vertices may pass each other.
+    /// The filter for contacts of surfaces. `local` are the triangles of `pair`.
     #[inline(always)]
     pub(super) fn new(
         shapes: &'a TriangleShapes<'a>,
         pair: [u32; 2],
         local: &'a TrianglePair,
-        may_pass: bool,
-    ) -> Self {
-        let surfaces = [shapes[0].around(pair[0]), shapes[1].around(pair[1])];
-        let mut filter = Self { shapes, pair, local, surfaces, may_pass };
+    ) -> Option<Self> {
+        let surfaces = [shapes[0].around(pair[0])?, shapes[1].around(pair[1])?];
+        let mut filter = Self { shapes, pair, local, surfaces };
         for i in 0..2 {
-            let is_sheet = filter.surfaces[i].as_ref().is_some_and(|it| it.side == Side::Sheet);
             let other = 1 - i;
-            if is_sheet
+            if filter.surfaces[i].side == Side::Sheet
                 && filter.is_thin(other)
                 && filter.smaller() == Some(other)
                 && filter.is_in_front(i)
-                && let Some(sheet) = &mut filter.surfaces[i]
             {
-                sheet.side = Side::Outer;
+                filter.surfaces[i].side = Side::Outer;
             }
         }
-        filter
+        Some(filter)
     }
 
-    /// First pass. `clipped` is memory.
+    /// First pass. `may_pass`: edges and vertices may pass each other. `clipped` is memory.
     #[inline(always)]
-    pub(super) fn apply(&self, contact: TriangleContact, clipped: &mut ManifoldPoints) -> Verdict {
+    pub(super) fn apply(
+        &self,
+        contact: TriangleContact,
+        may_pass: bool,
+        clipped: &mut ManifoldPoints,
+    ) -> Verdict {
         let of_triangles = TriangleSurfaceContact::of_triangles(contact);
-        if let [None, None] = self.surfaces {
-            return Verdict::Contact(of_triangles, None);
-        }
-        if self.surfaces.iter().flatten().any(|surface| surface.side == Side::Inner) {
+        if self.surfaces.iter().any(|surface| surface.side == Side::Inner) {
             return Verdict::None;
         }
         if contact.distance > self.shapes.filter_distance {
@@ -130,7 +131,7 @@ impl<'a> SurfaceFilter<'a> {
             return if leads_inside { Verdict::None } else { Verdict::Contact(of_triangles, None) };
         }
         if !contact.features.is_crossing() {
-            if self.may_pass && self.passes_by(&contact) {
+            if may_pass && self.passes_by(&contact) {
                 return Verdict::Passing;
             }
             let is_first_minimum = self.is_minimum(0, &contact);
@@ -288,7 +289,7 @@ impl<'a> SurfaceFilter<'a> {
         let most = (contact.distance + crossing.greatest).max(0.0);
         let side_beyond = |i: usize, direction: DVec3| {
             let direction = self.in_frame(i, direction);
-            self.surfaces[i].as_ref().map_or(0.0, |s| s.side_beyond(self.pair[i], direction, most))
+            self.surfaces[i].side_beyond(self.pair[i], direction, most)
         };
         let beyond = if support.is_missing() {
             side_beyond(0, contact.normal) + side_beyond(1, -contact.normal)
@@ -307,11 +308,11 @@ impl<'a> SurfaceFilter<'a> {
 
     /// Returns the signs with which the normals of the triangles lead out of solids; `None` for sheets.
     fn outward_signs(&self) -> [Option<f64>; 2] {
-        [0, 1].map(|i| self.surfaces[i].as_ref()?.side.outward())
+        self.surfaces.each_ref().map(|surface| surface.side.outward())
     }
 
     fn are_solid(&self) -> [bool; 2] {
-        [0, 1].map(|i| self.surfaces[i].as_ref().is_some_and(Around::is_solid))
+        self.surfaces.each_ref().map(Around::is_solid)
     }
 
     /// Returns true if the triangles are within a distance, in their sizes.
@@ -336,18 +337,19 @@ impl<'a> SurfaceFilter<'a> {
         if feature == Feature::Face {
             return None;
         }
-        let [a, b, c] = self.local.corners[i];
-        let up = (b - a).cross(c - a).try_normalize()?;
+        let (up, height) = self.middle_over(i);
         let own = [normal, -normal][i];
-        let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center());
-        let up = if up.dot(middle - a) < 0.0 { -up } else { up };
+        let up = if height < 0.0 { -up } else { up };
         let cosine = up.dot(own);
         let place = self.place(i, contact);
-        if cosine > UPRIGHT || !self.surfaces[i].as_ref()?.is_border(self.pair[i], feature, place) {
+        let is_flat = up == DVec3::ZERO;
+        if is_flat || cosine > UPRIGHT || !self.surfaces[i].is_border(self.pair[i], feature, place)
+        {
             return None;
         }
         let lowest = self.shapes[1 - i].lowest(self.in_frame(1 - i, up).as_vec3())?;
-        let lowest = f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO) - a);
+        let lowest =
+            f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO) - self.local.corners[i][0]);
         if lowest < -LIP * self.shapes.filter_unit() {
             return None;
         }
@@ -400,49 +402,43 @@ impl<'a> SurfaceFilter<'a> {
     fn is_minimum(&self, i: usize, contact: &TriangleContact) -> bool {
         let direction = self.direction(i, contact);
         let to = Some((self.place(i, contact), feature(contact, 1 - i)));
-        let is_minimum = |surface: &Around<_>| {
-            surface.is_local_minimum(self.pair[i], feature(contact, i), direction, to)
-        };
-        self.surfaces[i].as_ref().is_none_or(is_minimum)
+        self.surfaces[i].is_local_minimum(self.pair[i], feature(contact, i), direction, to)
     }
 
     /// Returns true if the normal of a contact points into a shape.
     fn points_inside(&self, i: usize, contact: &TriangleContact) -> bool {
         let direction = self.direction(i, contact);
-        let points_inside = |surface: &Around<_>| {
-            surface.points_inside(self.pair[i], feature(contact, i), direction)
-        };
-        self.surfaces[i].as_ref().is_some_and(points_inside)
+        self.surfaces[i].points_inside(self.pair[i], feature(contact, i), direction)
     }
 
     /// Returns true if a surface ends at a feature, seen along an axis.
     #[inline(always)]
     fn ends(&self, i: usize, feature: Feature, axis: DVec3) -> bool {
-        let axis = self.in_frame(i, axis);
-        let ends =
-            |surface: &Around<_>| surface.is_local_minimum(self.pair[i], feature, axis, None);
-        self.surfaces[i].as_ref().is_none_or(ends)
+        self.surfaces[i].is_local_minimum(self.pair[i], feature, self.in_frame(i, axis), None)
     }
 
     /// Returns the square of the least cosine between the normal of a triangle and an axis along which its surface may end.
     fn least_square(&self, i: usize) -> f64 {
-        let Some(Around { facets, .. }) = &self.surfaces[i] else { return 0.0 };
-        facets.cones(self.pair[i]).least_square(false)
+        self.surfaces[i].facets.cones(self.pair[i]).least_square(false)
     }
 
     /// Returns true if a contact is deep since a point is far inside, not since this triangle is on
     /// the far side of its body.
     fn is_far_inside(&self, contact: &TriangleContact) -> bool {
         let within = (-contact.distance / SHALLOW) as Real;
-        let point1 = (self.local.origin.as_dvec3() + contact.point2).as_vec3();
-        let point2 =
-            self.shapes.pose.placement12.to_frame2(contact.point1, self.local.origin).as_vec3();
-        (0..2).zip([point1, point2]).any(|(i, point)| {
+        (0..2).any(|i| {
+            let point = self.in_shape(i, [contact.point2, contact.point1][i]).as_vec3();
             self.shapes[i].nearest(point).is_some_and(|(nearest, behind)| {
                 behind >= BEHIND && nearest.distance(point) > within
             })
         })
     }
+}
+
+/// Returns true if all normals of faces at borders lead to one side.
+pub(super) fn lead_one_way(mut normals: impl Iterator<Item = DVec3> + Clone) -> bool {
+    let sum: DVec3 = normals.clone().sum();
+    normals.all(|normal| normal.dot(sum) > 0.0)
 }
 
 /// Returns the feature of a contact on shape 1 (0) or 2 (1).

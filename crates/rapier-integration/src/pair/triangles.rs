@@ -13,7 +13,6 @@ use sbbk_core::contact::{ManifoldPoints, TriangleContact, clip, push_closest};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
-use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
 use super::deep::{self, ContourMemory};
 use super::descents::DescentMemory;
@@ -24,7 +23,7 @@ use super::pose::{Moving, PairPose};
 use super::query::{ContactList, ContactPoints, Limits, Memory, PairQuery};
 use super::reduce::{ContactSummary, PatchPlan, longest_side};
 use super::state::Candidate;
-use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict};
+use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict, lead_one_way};
 use super::triangle_contacts::{constrained_normal, contact_of, write_points};
 use super::triangle_shapes::{
     ContactSource, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
@@ -184,7 +183,9 @@ impl PairQuery for TriangleQuery<'_> {
             contacts.extend(held.and_then(|held| held.push_out(is_in_both, self.inside)));
         }
         if contacts.is_empty() {
-            contacts.extend(islands.overlaps().filter_map(|pair| self.contact_of_triangles(pair)));
+            let within = f64::from(self.pose().prediction);
+            let contact = |pair: [u32; 2]| self.shapes.nearest_points(pair, within);
+            contacts.extend(islands.overlaps().filter_map(contact));
         }
     }
 
@@ -262,8 +263,10 @@ impl TriangleQuery<'_> {
         let Some(local) = self.shapes.local(pair) else { return };
         let Some(contact) = touch(&local, candidate, limits) else { return };
         first.is_near = true;
-        let filter = SurfaceFilter::new(&self.shapes, pair, &local, true);
-        match filter.apply(contact, &mut first.clipped) {
+        let Some(filter) = SurfaceFilter::new(&self.shapes, pair, &local) else {
+            return first.contacts.push((pair, TriangleSurfaceContact::of_triangles(contact)));
+        };
+        match filter.apply(contact, true, &mut first.clipped) {
             Verdict::None if filter.is_touching(&contact, NEARLY_TOUCHING) => {
                 first.islands.touching.push(pair);
             }
@@ -288,7 +291,8 @@ impl TriangleQuery<'_> {
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         contacts.clear();
-        let contact = |of: &Candidate<Hint>| self.contact_of_triangles(of.subshapes);
+        let within = f64::from(self.pose().prediction);
+        let contact = |of: &Candidate<Hint>| self.shapes.nearest_points(of.subshapes, within);
         let is_near = |(_, hit): &TriangleHit| hit.contact.distance <= limits.reach;
         let may_touch = candidates.iter().filter(|candidate| limits.may_touch(candidate));
         contacts.extend(may_touch.filter_map(contact).filter(is_near));
@@ -306,7 +310,7 @@ impl TriangleQuery<'_> {
         let is_nearest = |contact: &TriangleContact| contact.distance < NEARER * nearest;
         for &(pair, contact) in passing.iter().filter(|(_, contact)| is_nearest(contact)) {
             let verdict =
-                self.shapes.with_filter(pair, false, |filter| filter.apply(contact, clipped));
+                self.shapes.with_filter(pair, |filter| filter.apply(contact, false, clipped));
             if let Some(Verdict::Contact(hit, border)) = verdict {
                 contacts.push((pair, hit));
                 upright.extend(border.map(|border| (pair, border)));
@@ -335,13 +339,6 @@ impl TriangleQuery<'_> {
                 passed.reject(i, &surface.facets, islands.final_normals(i), contacts);
             }
         }
-    }
-
-    /// Returns the contact of two triangles for surfaces that meet without a contact of their own.
-    fn contact_of_triangles(&self, pair: [u32; 2]) -> Option<TriangleHit> {
-        let local = self.shapes.local(pair)?;
-        let contact = contact_of(&local, f64::from(self.pose().prediction), None)?;
-        Some((pair, TriangleSurfaceContact::of_triangles(contact)))
     }
 
     /// Returns the overlap of two triangles along a direction in which triangle 2 leaves.
@@ -375,7 +372,7 @@ impl TriangleQuery<'_> {
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(support) = islands.open_support(crossing.pair) else { continue };
-            let contact = self.shapes.with_filter(crossing.pair, true, |filter| {
+            let contact = self.shapes.with_filter(crossing.pair, |filter| {
                 filter.supporting_contact(&crossing, support, clipped)
             });
             contacts.extend(contact.flatten().map(|contact| (crossing.pair, contact)));

@@ -24,7 +24,7 @@ pub use slopes::PlaceMemo;
 pub use spread::minimum_cones;
 pub use twins::{Place, hangs, is_flat, place, sides};
 
-use glamx::{DVec3, Vec3};
+use glamx::Vec3;
 use rustc_hash::FxHashMap;
 
 use crate::collections::CompactIndices;
@@ -66,24 +66,6 @@ impl Surface {
         let mesh = sides::RayMesh::new(rays, components.as_ref(), memo, sides::WallLimit::MESH);
         let kind = sides::of_samples(&mesh);
         Self { twins, hubs, has_small_components, components, doubles, kind }
-    }
-
-    /// Finds the side of a triangle as [`side`](side()) does. Takes less time, as rays count closed components as they are.
-    pub fn side(&self, triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-        sides::RayMesh::new(triangles, self.components.as_ref(), memo, sides::WallLimit::SIDE)
-            .side(triangle)
-    }
-
-    /// Returns the sign of the winding number around a point as [`winding_sign`](winding_sign()) does. Takes less time, as
-    /// rays count closed components as they are.
-    pub fn winding_sign(
-        &self,
-        triangles: &impl RayTriangles,
-        point: DVec3,
-        memo: &PlaceMemo,
-    ) -> Option<i32> {
-        sides::RayMesh::new(triangles, self.components.as_ref(), memo, sides::WallLimit::SIDE)
-            .winding_sign(point)
     }
 
     /// True if other triangles have the contacts of a triangle. An earlier one may have the same corners, in either winding. A

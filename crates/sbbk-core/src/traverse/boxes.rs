@@ -12,7 +12,6 @@ use wide::f32x4;
 
 use super::frame::Allowance;
 use super::placement::Placement;
-use crate::volumes::rounding::gamma;
 
 /// Tests boxes of two bodies at one pose. Made once a query.
 #[derive(Copy, Clone, Debug)]
@@ -86,16 +85,6 @@ pub struct NearBox<'a> {
 }
 
 impl NearBox<'_> {
-    /// A lower bound of the gap beyond the margin along the axes of frame 1, in units of frame 1;
-    /// zero if these do not separate the boxes.
-    pub fn gap(&self, one: TestedBox) -> f32 {
-        let offset = self.centre - lanes(one.centre);
-        let gaps = offset.abs() - (lanes(one.extent) + self.reach);
-        let [x, y, z, _] = gaps.fast_max(f32x4::ZERO).to_array();
-        // The squares and their sum round six times.
-        Vec3::new(x, y, z).length() * (1.0 - gamma(8))
-    }
-
     /// Returns true if no face axis of the two boxes separates them by more than the margin. False
     /// if a number is NaN.
     #[inline(always)]

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crate::support::{Random, Soup, bumpy_ball};
 use crate::surface::shapes::{cube, mapped, together};
 use glamx::{DVec3, Vec3};
-use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, Surface, SurfaceKind, side};
+use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, SurfaceKind, side};
 
 /// The middle and the half-lengths of a box.
 type Cuboid = [Vec3; 2];
@@ -40,19 +40,6 @@ fn is_covered(boxes: &[Cuboid], place: DVec3, normal: DVec3) -> bool {
     })
 }
 
-/// Returns the side of a triangle, by the closed components of the surface if these are known.
-fn found_side(
-    surface: Option<&Surface>,
-    triangles: &impl RayTriangles,
-    triangle: u32,
-    memo: &PlaceMemo,
-) -> Side {
-    match surface {
-        Some(surface) => surface.side(triangles, triangle, memo),
-        None => side(triangles, triangle, memo),
-    }
-}
-
 /// Counts triangles that are covered in part or not, and wholly, each by whether they are found to be walls within.
 ///
 /// `is_analysed`: components are known to be closed.
@@ -72,7 +59,7 @@ fn walls_within(is_lattice: bool, is_analysed: bool) -> [[u32; 2]; 2] {
                 is_covered(&boxes, a + u * (b - a) + v * (c - a), normal)
             });
             let surface = is_analysed.then_some(&surface);
-            let found = found_side(surface, &soup, triangle, &memo) == Side::Inner;
+            let found = side(&soup, surface, triangle, &memo) == Side::Inner;
             counts[usize::from(is_wall)][usize::from(found)] += 1;
         }
     }
@@ -101,7 +88,7 @@ fn flush_boxes_with_a_common_edge_have_faces() {
             let surface = soup.surface();
             assert_eq!(surface.kind(), SurfaceKind::Solid);
             for triangle in 0..soup.count() {
-                let side = surface.side(&soup, triangle, &memo);
+                let side = side(&soup, Some(&surface), triangle, &memo);
                 assert_eq!(side, Side::Outer, "triangle {triangle}, {thickness} thick");
             }
         }
@@ -134,7 +121,7 @@ fn triangles_wound_the_other_way_are_turned() {
             for triangle in 0..soup.count() {
                 let is_turned = (triangle as usize).is_multiple_of(nth);
                 let right = if is_turned { Side::Turned } else { Side::Outer };
-                let found = found_side(surface, &soup, triangle, &memo);
+                let found = side(&soup, surface, triangle, &memo);
                 wrong += u32::from(found != right);
                 walls += u32::from(found == Side::Inner);
             }
@@ -198,7 +185,7 @@ fn a_side_takes_as_long_in_a_wide_level_as_in_a_narrow_one() {
         // The box in the middle.
         let first = 12 * (width * (width / 2) + width / 2) as u32;
         for triangle in first..first + 12 {
-            found_side(is_analysed.then_some(&surface), &counted, triangle, &memo);
+            side(&counted, is_analysed.then_some(&surface), triangle, &memo);
         }
         counted.hits.get()
     };
@@ -223,7 +210,7 @@ fn meshes_of_open_parts_in_each_other_are_analysed_soon() {
         let of_kind = counted.hits.take();
         let memo = PlaceMemo::default();
         for triangle in 0..50 {
-            found_side(Some(&surface), &counted, triangle, &memo);
+            side(&counted, Some(&surface), triangle, &memo);
         }
         let of_sides = counted.hits.take();
         println!("{count} boxes: {of_kind} triangles for the kind, {of_sides} for 50 sides");
@@ -254,7 +241,7 @@ fn ends_of_flush_slabs_in_each_other_are_walls_within() {
             && corners.iter().any(|corner| corner.y > -0.5);
         if is_end {
             ends += 1;
-            assert_eq!(surface.side(&soup, triangle, &memo), Side::Inner, "{corners:?}");
+            assert_eq!(side(&soup, Some(&surface), triangle, &memo), Side::Inner, "{corners:?}");
         }
     }
     assert_eq!(ends, 2 * (12 + 8));

@@ -3,18 +3,16 @@
 //! * [`shape`], [`parts`]: Parry's shapes, with bounds and poses.
 //! * [`near`]: descends Parry's BVH of the mesh with the box of a part in the frame of the part.
 //! * [`contact`]: the exact contact of a triangle and a part.
-//! * [`triangle_part`], [`points`], [`facing`]: write a contact to a manifold.
-//! * [`pair`]: a mesh and its parts. [`query`]: the contact query.
+//! * [`triangle_part`], [`points`]: write a contact to a manifold.
+//! * [`query`]: a mesh and its parts, and the contact query.
 //! * [`ghosts`], [`internal_edges`]: correct contacts at internal edges. [`push_out`]: moves parts out of solids.
 //! * [`search`], [`cast`]: queries without manifolds.
 
 mod cast;
 mod contact;
-mod facing;
 mod ghosts;
 mod internal_edges;
 mod near;
-mod pair;
 mod parts;
 mod points;
 mod push_out;
@@ -24,7 +22,7 @@ mod shape;
 mod triangle_part;
 
 pub(crate) use cast::FoundCast;
-pub(crate) use pair::ConvexPair;
 pub(crate) use parts::{Parts, PlacedPart};
+pub(crate) use query::ConvexPair;
 pub(crate) use search::{ConvexSearch, FoundTriangle};
 pub(crate) use shape::ConvexShape;

@@ -11,9 +11,9 @@ use sbbk_core::surface::strays::seam;
 use sbbk_core::volumes::Sphere;
 
 use super::contact::{KeptHull, NormalSource, PartContact, SAME_WAY, core_contact, core_support};
-use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, is_over, ray_length};
+use super::query::ConvexPair;
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::{ContactSummary, PatchPlan, longest_side};

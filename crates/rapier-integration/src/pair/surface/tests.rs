@@ -54,7 +54,7 @@ fn triangles_beside_each_other_pass_by() {
                 }
                 let contact = contact(t1, t2, f64::from(reach));
                 let Some(contact) = contact else { continue };
-                let filter = SurfaceFilter::new(&shapes, pair, &local, true);
+                let filter = SurfaceFilter::new(&shapes, pair, &local).unwrap();
                 let may_be_left_out =
                     filter.passes_by(&contact) && !filter.is_local_minimum(&contact);
                 let is_found = found.binary_search(&pair).is_ok();
@@ -65,4 +65,22 @@ fn triangles_beside_each_other_pass_by() {
         }
     }
     assert!(counts.into_iter().all(|count| count > 100), "{counts:?}");
+}
+
+/// Would catch rims that carry nothing, and bodies that run into the next floor.
+#[test]
+fn walls_around_a_body_lead_no_way() {
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let groove = [(x + y).normalize(), (y - x).normalize() + 0.1 * y];
+    for (normals, expected) in [
+        (&[y, y][..], true),
+        (&groove, true),
+        (&[x, y], true),
+        (&[x, -x], false),
+        (&[x, z, -x, -z], false),
+        (&[x, x, -x, z], false),
+        (&[], true),
+    ] {
+        assert_eq!(lead_one_way(normals.iter().copied()), expected, "{normals:?}");
+    }
 }
