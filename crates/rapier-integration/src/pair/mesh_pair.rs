@@ -6,8 +6,8 @@
 //! # Edits
 //!
 //! A pair keeps candidates, and Rapier drops them when a shape was edited. For hosts that do not,
-//! another field, scale, flag, or a removed triangle is noticed at once. An added triangle is
-//! noticed at the next descent.
+//! another field, scale or flag is noticed at once. A removed triangle is noticed when the pair moves, and an added one at the
+//! next descent.
 
 use std::sync::OnceLock;
 

@@ -282,6 +282,9 @@ impl Outermost {
         let equal_depth = plan.equal_depth + SUNK * (-deepest).max(0.0);
         let mut least = 0.0;
         loop {
+            if self.chosen.len() == MOST_POINTS && self.is_first_needless(plan, points) {
+                self.chosen.remove(0);
+            }
             let is_full = self.chosen.len() >= MOST_POINTS;
             let weighed = points.iter().zip(&self.squares).map(|((_, distance), &square)| {
                 let hover = distance - deepest;
@@ -309,6 +312,17 @@ impl Outermost {
             }
         }
         &self.chosen
+    }
+
+    /// Returns true if the first point is inside of the hull of others, one of which is as deep up to rounding.
+    fn is_first_needless(&self, plan: PatchPlan, points: &[(Vec3, Real)]) -> bool {
+        let [first, others @ ..] = &self.chosen[..] else { return false };
+        let is_as_deep = |i: &usize| points[*i].1 - points[0].1 <= LINE * plan.equal_depth;
+        let is_near = plan.far.is_finite();
+        is_near
+            && *first == 0
+            && !self.hull.contains(&self.flat[0])
+            && others.iter().any(is_as_deep)
     }
 
     /// Chooses the first point.
