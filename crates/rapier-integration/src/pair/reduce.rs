@@ -314,7 +314,7 @@ impl Outermost {
         &self.chosen
     }
 
-    /// Returns true if the first point is inside of the hull of others, one of which is as deep up to rounding.
+    /// Returns true if the first point is inside of the hull, and another point is as deep up to rounding.
     fn is_first_needless(&self, plan: PatchPlan, points: &[(Vec3, Real)]) -> bool {
         let [first, others @ ..] = &self.chosen[..] else { return false };
         let is_as_deep = |i: &usize| points[*i].1 - points[0].1 <= LINE * plan.equal_depth;

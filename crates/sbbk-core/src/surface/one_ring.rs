@@ -330,7 +330,7 @@ impl<F: Facets> Around<F> {
                 let is_far = |corner: &DVec3| corner.length_squared() > seam * seam;
                 visit(&corners, &mut corners.into_iter().filter(is_far));
             }
-            // Not all facets stop at a break.
+            // Facets may go on after a break.
             most = most.saturating_sub(1);
             if most == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
