@@ -1,9 +1,9 @@
 //! Contact reduction: chooses the contacts of patches before their points are made, and then points.
 //!
 //! Contacts are grouped by normal. Each group keeps its deepest contact and up to three that span
-//! the contact area. Contacts as deep but far from that area make patches of their own. Within the area
+//! the contact area. Contacts as deep but far from that area stay, too. Within the area
 //! a contact adds nothing: the velocities of a rigid body along the normal are linear there.
-//! Wide contacts stay, as one point tells little about them. Then their points are divided in the same way.
+//! Wide contacts stay, as one point tells little about them. Points are then chosen in the same way.
 
 use std::cmp::Ordering;
 
@@ -247,7 +247,7 @@ fn seed_of(
 }
 
 /// Least distance of a chosen point from the hull, in distances between the first two points. Higher: narrow
-/// sides lose corners; lower: rounding adds points to a line.
+/// sides lose corners; lower: rounding adds points to a line. Also the share of [`PatchPlan::equal_depth`] that counts as rounding.
 const LINE: Real = 1.0e-3;
 
 /// The outermost ones of some points, with memory for their choice.
