@@ -1,7 +1,8 @@
 //! A pair of shapes: from a pose to contact manifolds.
 //!
-//! [`query`] is the pipeline. The table of steps in `ARCHITECTURE.md` says which file does what.
+//! [`update`] is the pipeline. The table of steps in `ARCHITECTURE.md` says which file does what.
 
+mod borders;
 mod chunks;
 mod convex;
 mod deep;
@@ -22,6 +23,7 @@ mod triangle_contacts;
 mod triangle_shape;
 mod triangle_shapes;
 mod triangles;
+mod update;
 mod write;
 
 pub(crate) use convex::{
@@ -31,5 +33,5 @@ pub(crate) use descents::BvhDescent;
 pub(crate) use field::Field;
 pub(crate) use mesh_pair::{MeshPair, ShapeView};
 pub(crate) use pose::{MeshPlace, PairPose};
-pub(crate) use query::{QueryOutcome, update_manifolds};
 pub use triangle_contacts::TriangleContacts;
+pub(crate) use update::{QueryOutcome, update_manifolds};

@@ -125,11 +125,6 @@ impl ContactSummary {
     }
 }
 
-/// Returns the length of the longest side of a triangle.
-pub(super) fn longest_side([a, b, c]: [Vec3; 3]) -> Real {
-    a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt()
-}
-
 /// Memory for contact reduction.
 #[derive(Default)]
 pub(crate) struct Reduction {
@@ -205,7 +200,11 @@ impl Reduction {
                     let cosine = seed.normal.dot(summary.normal);
                     cosine >= same_normal || cosine >= SAME_NORMAL_OVER && hovers(seed)
                 };
-                *patch = first as u32 + seed_of(seeds, first, is_like, summary);
+                let known = seeds[first..].iter().position(is_like);
+                *patch = known.map_or(seeds.len(), |i| first + i) as u32;
+                if known.is_none() {
+                    seeds.push(*summary);
+                }
             }
         }
         members.sort_unstable_by(|a, b| a.patch.cmp(&b.patch).then_with(|| by_depth(a, b)));
@@ -230,20 +229,6 @@ impl Reduction {
         }
         members.retain(|member| member.patch != NO_PATCH);
     }
-}
-
-/// Returns the index, counted from `start`, of the first seed that fits, or of a new one.
-fn seed_of(
-    seeds: &mut Vec<ContactSummary>,
-    start: usize,
-    fits: impl Fn(&ContactSummary) -> bool,
-    new: &ContactSummary,
-) -> u32 {
-    let place = seeds[start..].iter().position(fits).unwrap_or_else(|| {
-        seeds.push(*new);
-        seeds.len() - 1 - start
-    });
-    place as u32
 }
 
 /// Least distance of a chosen point from the hull, in distances between the first two points. Higher: narrow

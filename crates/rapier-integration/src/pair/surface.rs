@@ -9,12 +9,6 @@
 //!
 //! A sheet is a solid for a [thin](THIN) body in front of it.
 //!
-//! A body that slides from one floor onto the next has sunk in a little, and would run into the border of the
-//! next floor. So a border is met along the normal of its face by a body that is all on one side of the face.
-//!
-//! The rim of an open box has borders, too. A lid just fits between its walls: it is on the inner side
-//! of each. But the normals of walls lead against each other, so no way is left, and the rim carries the lid.
-//!
 //! Crossing surfaces never stay without a contact: an island without one gets the best there is
 //! ([`OverlapIslands`](super::islands::OverlapIslands)).
 
@@ -63,7 +57,7 @@ pub(super) enum Verdict {
     None,
     /// Edges or vertices that may pass each other. They have a contact only if nothing is nearer.
     Passing,
-    /// A contact and, at a [border](lead_one_way), the one along the normal of the face.
+    /// A contact and, at a [border](super::borders), the one along the normal of the face.
     Contact(TriangleSurfaceContact, Option<TriangleContact>),
     /// The surfaces cross. A contact may still be rejected by the second pass.
     Crossing(Crossing, Option<TriangleSurfaceContact>),
@@ -433,12 +427,6 @@ impl<'a> SurfaceFilter<'a> {
             })
         })
     }
-}
-
-/// Returns true if all normals of faces at borders lead to one side.
-pub(super) fn lead_one_way(mut normals: impl Iterator<Item = DVec3> + Clone) -> bool {
-    let sum: DVec3 = normals.clone().sum();
-    normals.all(|normal| normal.dot(sum) > 0.0)
 }
 
 /// Returns the feature of a contact on shape 1 (0) or 2 (1).

@@ -11,8 +11,10 @@ use glamx::DVec3;
 use parry3d::math::Real;
 use sbbk_core::contact::{ManifoldPoints, TriangleContact, clip, push_closest};
 use sbbk_core::query::TrianglePair;
+use sbbk_core::surface::longest_side;
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
+use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
 use super::deep::{self, ContourMemory};
 use super::descents::DescentMemory;
@@ -21,9 +23,9 @@ use super::islands::{Crossing, Overlap, OverlapIslands};
 use super::passed::PassedTriangles;
 use super::pose::{Moving, PairPose};
 use super::query::{ContactList, ContactPoints, Limits, Memory, PairQuery};
-use super::reduce::{ContactSummary, PatchPlan, longest_side};
+use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
-use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict, lead_one_way};
+use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict};
 use super::triangle_contacts::{constrained_normal, contact_of, write_points};
 use super::triangle_shapes::{
     ContactSource, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
@@ -208,8 +210,9 @@ impl PairQuery for TriangleQuery<'_> {
         points: &mut ContactPoints,
     ) -> Option<ContactSummary> {
         let (pair, TriangleSurfaceContact { contact, source }) = hit;
-        let corners @ [origin, ..] = self.shapes[0].corners(pair[0])?;
-        let reach = longest_side(corners).min(longest_side(self.shapes[1].corners(pair[1])?));
+        let corners = [self.shapes[0].corners(pair[0])?, self.shapes[1].corners(pair[1])?];
+        let [[origin, ..], _] = corners;
+        let [side1, side2] = corners.map(|of| longest_side(&of.map(|corner| corner.as_dvec3())));
         let of_triangles = self.shapes.cones(*pair);
         let cones = source.cones(&of_triangles);
         let normal = constrained_normal(contact, cones, &self.pose().pos12)?;
@@ -220,6 +223,7 @@ impl PairQuery for TriangleQuery<'_> {
             self.points(hit, scratch, points);
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
         }
+        let reach = side1.min(side2) as Real;
         Some(ContactSummary { part: 0, normal, point, distance, reach })
     }
 

@@ -10,7 +10,7 @@ pub(super) fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
 }
 
 /// Returns the length of the longest side of a triangle.
-pub(super) fn longest_side([a, b, c]: &[DVec3; 3]) -> f64 {
+pub fn longest_side([a, b, c]: &[DVec3; 3]) -> f64 {
     a.distance(*b).max(b.distance(*c)).max(c.distance(*a))
 }
 

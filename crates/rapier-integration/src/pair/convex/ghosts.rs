@@ -26,7 +26,7 @@
 //! A shape that stands at the foot of a wall has sunk into the floor, and is nearest to the edge between both.
 //! The wall then keeps a contact with its own normal, if the shape touches the wall once the floor has lifted it.
 //!
-//! [Borders](crate::pair::surface) of the mesh are met as their faces are.
+//! [Borders](crate::pair::borders) of the mesh are met as their faces are.
 //!
 //! Triangles are neighbours if their corners are equal; meshes need no shared vertices. A contact that
 //! no such neighbour explains is compared with all triangles at its point
@@ -61,7 +61,7 @@ pub(crate) struct GhostContacts {
     pub(super) on_faces: Vec<u32>,
     /// Contacts at borders of the mesh that keep their normals.
     pub(super) borders: Vec<u32>,
-    /// Contacts at borders, along the normals of the faces. Also has these normals in the axes of the mesh.
+    /// Contacts at borders, along the normals of the faces. Also has these normals in axes that all parts share.
     pub(super) upright: Vec<(u32, ConvexContact, DVec3)>,
     /// Contacts that share a corner with the one at hand.
     pub(super) nearby: Vec<u32>,

@@ -13,8 +13,8 @@ use super::contact::{NormalSource, PartContact};
 use super::ghosts::{GhostContacts, corner_key};
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::box_between;
+use crate::pair::borders::lead_one_way;
 use crate::pair::query::ContactList;
-use crate::pair::surface::lead_one_way;
 
 /// Lists of contacts up to this length are searched linearly.
 const LINEAR_SEARCH: usize = 64;
@@ -114,7 +114,7 @@ impl ConvexQuery<'_> {
         ghosts.find(contacts, keys, extends_beyond, find_strays, find_wall);
     }
 
-    /// Gives contacts at [borders](crate::pair::surface) the normals of their faces.
+    /// Gives contacts at [borders](crate::pair::borders) the normals of their faces.
     fn turn_at_borders(
         &self,
         ghosts: &mut GhostContacts,
@@ -129,7 +129,7 @@ impl ConvexQuery<'_> {
                 let upright =
                     self.with_pair(*of, scratch, |pair| pair.upright_at_border(&hit.contact));
                 let upright = upright.flatten()?;
-                Some((border, upright, self.normal_in_mesh(*of, &upright, scratch)))
+                Some((border, upright, self.shared_normal(*of, &upright, scratch)))
             },
         ));
         if lead_one_way(upright.iter().map(|(.., normal)| *normal)) {

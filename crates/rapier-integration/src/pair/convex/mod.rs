@@ -4,7 +4,7 @@
 //! * [`near`]: descends Parry's BVH of the mesh with the box of a part in the frame of the part.
 //! * [`contact`]: the exact contact of a triangle and a part.
 //! * [`triangle_part`], [`points`]: write a contact to a manifold.
-//! * [`query`]: a mesh and its parts, and the contact query.
+//! * [`pair`]: a mesh and its parts. [`query`]: the contact query.
 //! * [`ghosts`], [`internal_edges`]: correct contacts at internal edges. [`push_out`]: moves parts out of solids.
 //! * [`search`], [`cast`]: queries without manifolds.
 
@@ -13,6 +13,7 @@ mod contact;
 mod ghosts;
 mod internal_edges;
 mod near;
+mod pair;
 mod parts;
 mod points;
 mod push_out;
@@ -22,7 +23,7 @@ mod shape;
 mod triangle_part;
 
 pub(crate) use cast::FoundCast;
+pub(crate) use pair::ConvexPair;
 pub(crate) use parts::{Parts, PlacedPart};
-pub(crate) use query::ConvexPair;
 pub(crate) use search::{ConvexSearch, FoundTriangle};
 pub(crate) use shape::ConvexShape;

@@ -11,7 +11,7 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::SurfaceKind;
 
 use super::contact::{NormalSource, PartContact};
-use super::query::ConvexPair;
+use super::pair::ConvexPair;
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{BEHIND, LazySurface, is_covered};
 use crate::pair::query::ContactList;

@@ -5,7 +5,6 @@ use std::ops::ControlFlow;
 use std::thread::LocalKey;
 
 use glamx::DVec3;
-use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use sbbk_core::contact::convex::ConvexContact;
@@ -16,43 +15,17 @@ use sbbk_core::volumes::rounding::gamma;
 use super::contact::{PartContact, SAME_WAY, ball_contact, core_contact};
 use super::ghosts::GhostContacts;
 use super::near::triangles_near;
+use super::pair::ConvexPair;
 use super::parts::{Part, PartData, Parts, PlacedPart};
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::SbbkConfig;
-use crate::mesh::{Change, LazySurface, MeshView, PairMesh, is_covered};
-use crate::pair::pose::{MeshPlace, Moving, PairPose};
+use crate::mesh::{Change, LazySurface, PairMesh, is_covered};
+use crate::pair::pose::{Moving, PairPose};
 use crate::pair::query::{
     ContactList, ContactPoints, Limits, Memory, Pair, PairQuery, QueryMemory,
 };
 use crate::pair::reduce::{ContactSummary, PatchPlan};
 use crate::pair::state::Candidate;
-
-/// A mesh and one or more convex shapes, at a pose.
-#[derive(Copy, Clone)]
-pub(crate) struct ConvexPair<'a> {
-    pub(crate) pose: &'a PairPose,
-    pub(crate) mesh: MeshView<'a>,
-    pub(crate) parts: Parts<'a>,
-    pub(crate) mesh_place: MeshPlace,
-    pub(crate) config: &'a SbbkConfig,
-}
-
-impl ConvexPair<'_> {
-    /// Returns the box around the mesh in the frame of the parts, grown by `reach`.
-    pub(super) fn mesh_box(&self, reach: Real) -> Aabb {
-        self.mesh.placed_root(&self.mesh_place.mesh_in_shape(&self.pose.pos12), reach)
-    }
-
-    /// Returns true for contacts of the surface. Soft bodies need contacts of each triangle.
-    pub(super) fn has_surface(&self) -> bool {
-        self.config.has_surfaces() && self.mesh.is_rigid()
-    }
-
-    pub(super) fn is_ball(&self) -> bool {
-        matches!(self.parts, Parts::One(ConvexShape::Ball(_)))
-    }
-}
 
 impl<'a> Pair for ConvexPair<'a> {
     /// Data of the mesh and of the parts that the candidates belong to.
@@ -301,7 +274,7 @@ impl ConvexQuery<'_> {
     ) {
         let Some(surface) = &self.surface else { return };
         let mut normals =
-            contacts.iter().map(|(of, hit)| self.normal_in_mesh(*of, &hit.contact, scratch));
+            contacts.iter().map(|(of, hit)| self.shared_normal(*of, &hit.contact, scratch));
         let Some(first) = normals.next() else { return };
         if normals.any(|normal| first.dot(normal) < SAME_WAY)
             && surface.kind() != SurfaceKind::Sheet
@@ -318,13 +291,14 @@ impl ConvexQuery<'_> {
         }
     }
 
-    /// Returns the normal of a contact in the axes of the mesh.
-    pub(super) fn normal_in_mesh(
+    /// Returns the normal of a contact in axes that all parts share. A single part has its own axes, others those of the mesh.
+    pub(super) fn shared_normal(
         &self,
         subshapes: [u32; 2],
         contact: &ConvexContact,
         scratch: &mut ConvexScratch,
     ) -> DVec3 {
+        let Parts::Many(..) = self.pair.parts else { return contact.normal };
         let [_, part] = self.pair.mesh_place.swap(subshapes);
         let turned = self
             .pair

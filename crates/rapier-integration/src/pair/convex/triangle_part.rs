@@ -7,16 +7,17 @@ use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::shape::{HalfSpace, PackedFeatureId};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
+use sbbk_core::surface::longest_side;
 use sbbk_core::surface::strays::seam;
 use sbbk_core::volumes::Sphere;
 
 use super::contact::{KeptHull, NormalSource, PartContact, SAME_WAY, core_contact, core_support};
+use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, is_over, ray_length};
-use super::query::ConvexPair;
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
-use crate::pair::reduce::{ContactSummary, PatchPlan, longest_side};
+use crate::pair::reduce::{ContactSummary, PatchPlan};
 
 /// Least cosine between the normals of a contact and of a face whose normal it takes. Higher: shapes deep in a mesh stumble
 /// over internal edges. Lower: shapes half within a wall are pushed through it.
@@ -189,7 +190,8 @@ impl TrianglePartPair<'_> {
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
         }
         let part = if self.part.pose.is_some() { self.placed.index } else { 0 };
-        let reach = longest_side(self.corners).min(2.0 * self.placed.extent.ball().radius);
+        let side = longest_side(&self.corners.map(|corner| corner.as_dvec3()));
+        let reach = (side as Real).min(2.0 * self.placed.extent.ball().radius);
         Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance, reach })
     }
 

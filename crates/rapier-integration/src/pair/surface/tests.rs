@@ -66,21 +66,3 @@ fn triangles_beside_each_other_pass_by() {
     }
     assert!(counts.into_iter().all(|count| count > 100), "{counts:?}");
 }
-
-/// Would catch rims that carry nothing, and bodies that run into the next floor.
-#[test]
-fn walls_around_a_body_lead_no_way() {
-    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
-    let groove = [(x + y).normalize(), (y - x).normalize() + 0.1 * y];
-    for (normals, expected) in [
-        (&[y, y][..], true),
-        (&groove, true),
-        (&[x, y], true),
-        (&[x, -x], false),
-        (&[x, z, -x, -z], false),
-        (&[x, x, -x, z], false),
-        (&[], true),
-    ] {
-        assert_eq!(lead_one_way(normals.iter().copied()), expected, "{normals:?}");
-    }
-}

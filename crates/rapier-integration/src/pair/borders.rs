@@ -1,0 +1,38 @@
+//! Contacts at the borders of meshes.
+//!
+//! A body that slides from one floor onto the next has sunk in a little, and would run into the border of the
+//! next floor. So a border is met along the normal of its face by a body that is all on one side of the face.
+//!
+//! The rim of an open box has borders, too. A lid just fits between its walls: it is on the inner side
+//! of each. But the normals of walls lead against each other, so no way is left, and the rim carries the lid.
+
+use glamx::DVec3;
+
+/// Returns true if all normals of faces at borders lead to one side.
+pub(super) fn lead_one_way(mut normals: impl Iterator<Item = DVec3> + Clone) -> bool {
+    let sum: DVec3 = normals.clone().sum();
+    normals.all(|normal| normal.dot(sum) > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch rims that carry nothing, and bodies that run into the next floor.
+    #[test]
+    fn walls_around_a_body_lead_no_way() {
+        let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+        let groove = [(x + y).normalize(), (y - x).normalize() + 0.1 * y];
+        for (normals, expected) in [
+            (&[y, y][..], true),
+            (&groove, true),
+            (&[x, y], true),
+            (&[x, -x], false),
+            (&[x, z, -x, -z], false),
+            (&[x, x, -x, z], false),
+            (&[], true),
+        ] {
+            assert_eq!(lead_one_way(normals.iter().copied()), expected, "{normals:?}");
+        }
+    }
+}
