@@ -291,7 +291,7 @@ impl ConvexQuery<'_> {
         }
     }
 
-    /// Returns the normal of a contact in axes that all parts share. A single part has its own axes, others those of the mesh.
+    /// Returns the normal of a contact in the axes of the mesh. A single part needs no common axes and keeps its own.
     pub(super) fn shared_normal(
         &self,
         subshapes: [u32; 2],
