@@ -149,6 +149,7 @@ impl<'a> SurfaceFilter<'a> {
         let points_inside = |i: usize| self.points_inside(i, contact);
         (is_solid[0] || is_solid[1])
             && !(is_solid[0] && is_first_minimum)
+            && self.local.corners.iter().any(|corners| !leans(corners, contact.normal))
             && (0..2).all(|i| !is_solid[i] || points_inside(i))
             && self.is_way_inside(is_solid, contact)
     }
