@@ -162,7 +162,11 @@ impl<'a> SurfaceFilter<'a> {
         }
         let length = (1.0 - 2.0 * WITHIN) * contact.distance;
         let ends = |i: usize| self.shapes[i].ends_within(self.way(i, contact), length);
-        (0..2).any(|i| !ends(i) && self.may_hold(i, contact, length))
+        let is_sure = |i: usize| {
+            let direction = self.direction(i, contact);
+            self.surfaces[i].leads_behind_all(self.pair[i], feature(contact, i), direction)
+        };
+        (0..2).any(|i| !ends(i) && (is_sure(i) || self.may_hold(i, contact, length)))
     }
 
     /// Returns true if the other triangle of a contact has a point in a solid, or if that is in doubt. `length`: of

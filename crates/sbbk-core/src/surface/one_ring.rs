@@ -186,6 +186,20 @@ impl<F: Facets> Around<F> {
         self.leads_in(triangle, feature, direction, &signs)
     }
 
+    /// True if a unit direction that leads into the solid leads behind all triangles of a closed, short one-ring. The way
+    /// then begins in the solid: directions outside of it lead in front of one.
+    pub fn leads_behind_all(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
+        let mut count = 0;
+        let is_behind = |wedge: Wedge| {
+            count += 1;
+            let is_behind = self.outward() * wedge.area().dot(direction) < 0.0;
+            let goes_on = is_behind && count <= LONG;
+            if goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
+        feature == Feature::Face
+            || self.facets.is_whole(triangle, feature) && self.visit(triangle, feature, is_behind)
+    }
+
     /// Returns true if a direction leads into the solid, by its heights over the triangles of a one-ring.
     fn leads_in(&self, triangle: u32, feature: Feature, direction: DVec3, signs: &Signs) -> bool {
         signs.lead_in().unwrap_or_else(|| {

@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 use crate::support::{Random, Soup, bumpy_ball};
 use crate::surface::shapes::{cube, mapped, together};
 use glamx::{DVec3, Vec3};
-use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, SurfaceKind, side};
+use sbbk_core::contact::Feature;
+use sbbk_core::surface::{Around, PlaceMemo, RayTriangles, Side, SurfaceKind, side, winding_sign};
 
 /// The middle and the half-lengths of a box.
 type Cuboid = [Vec3; 2];
@@ -38,6 +39,37 @@ fn is_covered(boxes: &[Cuboid], place: DVec3, normal: DVec3) -> bool {
         };
         boxes.iter().any(holds)
     })
+}
+
+/// Also counts directions, so that the test cannot pass without any.
+#[test]
+fn ways_behind_all_triangles_of_a_ring_begin_in_the_solid() {
+    let mut random = Random(8);
+    let (mut found, mut missed) = (0, 0);
+    for round in 0..20 {
+        let soup = bumpy_ball(5 + round, 0.4);
+        let (surface, memo) = (soup.surface(), PlaceMemo::default());
+        let around = Around { facets: soup.facets(&surface), side: Side::Outer };
+        for _ in 0..200 {
+            let triangle = random.below(soup.triangles.len() as u64) as u32;
+            let i = random.below(3) as usize;
+            let direction = random.direction();
+            let corners = soup.triangles[triangle as usize];
+            let at = |i: usize| soup.vertices[corners[i % 3] as usize].as_dvec3();
+            let [vertex, edge] = [Feature::Vertex(i as u8), Feature::Edge(i as u8)];
+            for (feature, place) in [(vertex, at(i)), (edge, at(i).midpoint(at(i + 1)))] {
+                let point = place + 1.0e-4 * direction;
+                let is_inside = winding_sign(&soup, None, point, &memo) == Some(1);
+                if around.leads_behind_all(triangle, feature, direction) {
+                    assert!(is_inside, "round {round}: {feature:?} of {triangle}, {direction}");
+                    found += 1;
+                } else {
+                    missed += u32::from(is_inside);
+                }
+            }
+        }
+    }
+    assert!(found > 1000 && missed < found, "{found} found, {missed} missed");
 }
 
 /// Counts triangles that are covered in part or not, and wholly, each by whether they are found to be walls within.
