@@ -31,6 +31,9 @@ const NEAR_ONE_NORMAL: Real = 2.0 * SAME_NORMAL * SAME_NORMAL - 1.0;
 const SAME_NORMAL_OVER: Real = 0.9;
 const OVER: Real = 0.1;
 
+/// Difference of depths, in prediction distances, up to which contacts are equally deep.
+const EQUALLY_DEEP: Real = 2.1e-5;
+
 fn detailed(detail: ContactDetail) -> SbbkDispatcher {
     with(|config| config.detail = detail)
 }
@@ -94,7 +97,7 @@ fn assert_stand_for(
         };
         let is_of = |patch: &&Manifold| {
             patch.local_n1.dot(contact.local_n1) >= least - 1e-6
-                && distance(patch) <= distance(contact)
+                && distance(patch) <= distance(contact) + EQUALLY_DEEP * prediction
                 || is_over(patch)
         };
         assert!(
@@ -109,7 +112,9 @@ fn assert_stand_for(
         );
     }
     let deepest = |all: &[Manifold]| all.iter().map(distance).fold(Real::INFINITY, Real::min);
-    assert_eq!(deepest(patches), deepest(every), "{what}");
+    let [of_patches, of_every] = [patches, every].map(deepest);
+    let range = of_every..=of_every + EQUALLY_DEEP * prediction;
+    assert!(range.contains(&of_patches), "{what}: {of_patches} and {of_every}");
     [patches.len(), every.len()]
 }
 
@@ -419,7 +424,10 @@ fn patches_reach_as_far_around_a_body_as_all_contacts() {
     let hull = SharedShape::convex_hull(&corners.collect::<Vec<_>>()).unwrap();
     let of = |(vertices, triangles)| SharedShape::trimesh(vertices, triangles).unwrap();
     // Its bases have vertices in the middle.
-    let profile = [[0.0, -0.4], [0.1, -0.4], [0.1, 0.4], [0.0, 0.4]];
+    let shaft = |radius: Real| {
+        let profile = [[0.0, -0.4], [radius, -0.4], [radius, 0.4], [0.0, 0.4]];
+        mesh::revolved(&profile.map(Vec2::from), 16).shape()
+    };
     let bodies = [
         ("cone", SharedShape::cone(0.4, 0.4)),
         ("cylinder", SharedShape::cylinder(0.4, 0.4)),
@@ -427,7 +435,8 @@ fn patches_reach_as_far_around_a_body_as_all_contacts() {
         ("hull", hull),
         ("mesh of a cone", of(Cone::new(0.4, 0.4).to_trimesh(20))),
         ("mesh of a cylinder", of(Cylinder::new(0.4, 0.4).to_trimesh(20))),
-        ("shaft", mesh::revolved(&profile.map(Vec2::from), 16).shape()),
+        ("shaft", shaft(0.1)),
+        ("pin", shaft(0.04)),
         ("mesh of a cuboid", of(Cuboid::new(Vec3::splat(0.4)).to_trimesh())),
     ];
     let mut random = Rand32::new(11);

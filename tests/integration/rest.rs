@@ -75,7 +75,7 @@ fn a_head_that_nothing_holds_tips_over_and_rests() {
     scenes.iter_mut().for_each(|scene| step(scene, 1000));
     let [stock, sbbk] = scenes.each_ref().map(|scene| bodies(scene).next().expect("one head"));
     let turned = |body: &RigidBody| 2.0 * body.rotation().xyz().length().asin();
-    assert!(turned(stock) < 0.02 && turned(sbbk) > 1.0);
+    assert!(turned(stock) < 0.02 && turned(sbbk) > 0.9);
     assert_eq!(speed(sbbk), 0.0, "at rest");
     let lowest = lowest(&mesh::monkey_head().centred().scaled_to(2.0), sbbk.position());
     assert!(lowest.abs() < 0.01, "its lowest point is at {lowest}");

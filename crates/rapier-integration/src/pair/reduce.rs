@@ -1,6 +1,6 @@
 //! Contact reduction: chooses the contacts of patches before their points are made, and then points.
 //!
-//! Contacts are grouped by normal. Each group keeps its deepest contact and up to three that span
+//! Contacts are grouped by normal. Each group keeps a deepest contact and up to three that span
 //! the contact area. Contacts as deep but far from that area stay, too. Within the area
 //! a contact adds nothing: the velocities of a rigid body along the normal are linear there.
 //! Wide contacts stay, as one point tells little about them. Points are then chosen in the same way.
@@ -219,7 +219,7 @@ impl Reduction {
             }
             places.clear();
             places.extend(members.iter().map(|Member { summary, .. }| summary.place()));
-            outermost.choose(plan, places, members[0].summary.normal);
+            outermost.choose(plan, places, |i| members[i].summary.normal);
             for (i, member) in members.iter_mut().enumerate() {
                 let excess = member.summary.reach - plan.size;
                 let is_needed = outermost.chosen.contains(&i)
@@ -235,6 +235,9 @@ impl Reduction {
 /// sides lose corners; lower: rounding adds points to a line. Also the share of [`PatchPlan::equal_depth`] that counts as rounding.
 const LINE: Real = 1.0e-3;
 
+/// Direction in which the first point is outermost. It is along no side of common meshes.
+const ANY_WAY: Vec2 = Vec2::new(0.9, 0.4);
+
 /// The outermost ones of some points, with memory for their choice.
 #[derive(Default)]
 pub(super) struct Outermost {
@@ -248,28 +251,25 @@ pub(super) struct Outermost {
 }
 
 impl Outermost {
-    /// Chooses the outermost of `points`, which have distances. The first one must be deepest. The body reaches the
-    /// others after the least turn. They are far outside the convex hull, seen along `normal`, and hardly above the first one,
+    /// Chooses the outermost of `points`, which have distances. The first of these must be deepest. The body reaches the
+    /// others after the least turn. They are far outside the convex hull, seen along its `normal`, and hardly above the deepest one,
     /// compared with its depth. More than four are chosen if others as deep are far from these.
     pub(super) fn choose(
         &mut self,
         plan: PatchPlan,
         points: &[(Vec3, Real)],
-        normal: Vec3,
+        normal: impl Fn(usize) -> Vec3,
     ) -> &[usize] {
         self.chosen.clear();
         if points.len() <= MOST_POINTS {
             self.chosen.extend(0..points.len());
             return &self.chosen;
         }
-        self.begin(points, normal);
+        self.begin(plan, points, normal);
         let deepest = points[0].1;
         let equal_depth = plan.equal_depth + SUNK * (-deepest).max(0.0);
         let mut least = 0.0;
         loop {
-            if self.chosen.len() == MOST_POINTS && self.is_first_needless(plan, points) {
-                self.chosen.remove(0);
-            }
             let is_full = self.chosen.len() >= MOST_POINTS;
             let weighed = points.iter().zip(&self.squares).map(|((_, distance), &square)| {
                 let hover = distance - deepest;
@@ -281,7 +281,7 @@ impl Outermost {
                 if next.1 > most.1 { next } else { most }
             };
             let (next, square) = weighed.enumerate().fold((0, least), farthest);
-            if next == 0 {
+            if square <= least {
                 break;
             }
             self.add(next);
@@ -299,27 +299,22 @@ impl Outermost {
         &self.chosen
     }
 
-    /// Returns true if the first point is inside of the hull, and another point is as deep up to rounding.
-    fn is_first_needless(&self, plan: PatchPlan, points: &[(Vec3, Real)]) -> bool {
-        let [first, others @ ..] = &self.chosen[..] else { return false };
-        let is_as_deep = |i: &usize| points[*i].1 - points[0].1 <= LINE * plan.equal_depth;
-        let is_near = plan.far.is_finite();
-        is_near
-            && *first == 0
-            && !self.hull.contains(&self.flat[0])
-            && others.iter().any(is_as_deep)
-    }
-
-    /// Chooses the first point.
-    fn begin(&mut self, points: &[(Vec3, Real)], normal: Vec3) {
-        let (x, y) = normal.any_orthonormal_pair();
+    /// Chooses the first point: an outermost one of those that are as deep as the deepest, up to rounding, and have its normal.
+    fn begin(&mut self, plan: PatchPlan, points: &[(Vec3, Real)], normal: impl Fn(usize) -> Vec3) {
+        let (x, y) = normal(0).any_orthonormal_pair();
         let flat = |&(point, _): &(Vec3, Real)| Vec2::new(x.dot(point), y.dot(point));
         self.flat.clear();
         self.flat.extend(points.iter().map(flat));
         self.squares.clear();
         self.squares.resize(points.len(), Real::INFINITY);
         self.hull.clear();
-        self.add(0);
+        let limit = points[0].1 + if plan.far.is_finite() { LINE * plan.equal_depth } else { 0.0 };
+        let is_as_deep =
+            |i: &usize| points[*i].1 <= limit && normal(*i).dot(normal(0)) >= plan.one_normal;
+        let along = |i: &usize| self.flat[*i].dot(ANY_WAY);
+        let first =
+            (0..points.len()).filter(is_as_deep).max_by(|a, b| along(a).total_cmp(&along(b)));
+        self.add(first.unwrap_or_default());
     }
 
     /// Chooses a point outside of the hull.

@@ -235,7 +235,7 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
             patch_points.swap(0, deepest);
             places.clear();
             places.extend(patch_points.iter().map(|point| (point.point.local_p1, distance(point))));
-            let chosen = outermost.choose(plan, places, patch_points[0].normals[0]);
+            let chosen = outermost.choose(plan, places, |i| patch_points[i].normals[0]);
             for chosen in chosen.chunks(MOST_POINTS) {
                 let mut chosen: ArrayVec<_, MOST_POINTS> = chosen.iter().copied().collect();
                 while !chosen.is_empty() {
