@@ -225,7 +225,7 @@ pub(super) fn add_contacts(
             Some((segment.pair, deep.contact_across(segment.pair, *point, normal, exits?)?))
         }));
         let way = IslandWay { normal, length, is_exact: contour.is_flat, is_sheet };
-        islands.set_way(segments[0].pair, way);
+        islands.set_way(island[0].island, way);
     }
 }
 

@@ -1,6 +1,6 @@
 use arrayvec::ArrayVec;
 use glamx::DVec3;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use sbbk_core::collections::UnionFind;
 use sbbk_core::contact::DoubleCone;
 
@@ -8,24 +8,22 @@ use sbbk_core::contact::DoubleCone;
 /// contacts that push each island apart.
 #[derive(Default)]
 pub(crate) struct OverlapIslands {
-    /// Pairs of the first pass that cross or have passed each other.
+    /// Pairs of the first pass that cross or have passed each other. In the order of pairs after the first pass.
     pub(super) crossings: Vec<Crossing>,
     /// Pairs of the first pass that touch without a contact.
     pub(super) touching: Vec<[u32; 2]>,
     /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
     pub(super) separation: Option<DVec3>,
-    /// Pairs whose contact pushes the wrong way.
-    rejected: FxHashSet<[u32; 2]>,
     /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
     deepest: Vec<(DVec3, f64)>,
-    /// Pairs that no reliable contact of their island would separate. They form islands of their own.
-    unserved: FxHashSet<[u32; 2]>,
     /// Normals of the reliable contacts of each island, one for each direction, and how far these push the shapes.
-    ways: FxHashMap<Node, ArrayVec<(DVec3, f64), MOST_DIRECTIONS>>,
-    /// Triangles of each island.
-    islands: UnionFind<Node>,
-    /// Support of each island, by its representative triangle.
-    support: FxHashMap<Node, Support>,
+    ways: FxHashMap<usize, ArrayVec<(DVec3, f64), MOST_DIRECTIONS>>,
+    /// Crossings, and then the pairs that touch, by index.
+    islands: UnionFind,
+    /// A pair with each triangle.
+    with_triangle: FxHashMap<Node, usize>,
+    /// Support of each island, at the index of its first crossing. Others have no pairs.
+    support: Vec<Support>,
 }
 
 /// Contacts that push the bodies of an island apart.
@@ -81,7 +79,8 @@ impl IslandWay {
 
 impl Support {
     fn is_enough(self) -> bool {
-        self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
+        self.pairs == 0
+            || self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
     }
 
     /// Returns true if the island has no reliable contact.
@@ -116,7 +115,7 @@ pub(super) struct Overlap {
 
 /// A crossing of an island that has too few contacts.
 pub(super) struct Unsupported {
-    pub(super) island: Node,
+    pub(super) island: usize,
     pub(super) pair: [u32; 2],
     /// True if the pair has a final contact.
     pub(super) has_contact: bool,
@@ -150,6 +149,18 @@ pub(super) struct Crossing {
     pub(super) is_sheet: [bool; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
+    pub(super) place: IslandPlace,
+}
+
+/// Place of a crossing in an island.
+#[derive(Copy, Clone, Default)]
+pub(super) struct IslandPlace {
+    /// True if the contact of the first pass pushes the wrong way.
+    is_rejected: bool,
+    /// True if no reliable contact of the island would separate the pair. Such pairs form islands of their own.
+    is_unserved: bool,
+    /// Index of the first crossing of the island.
+    island: usize,
 }
 
 /// Position of a body relative to a triangle of a sheet.
@@ -171,6 +182,17 @@ impl SheetSide {
 }
 
 impl Crossing {
+    /// Returns true if the contact of the pair is reliable and pushes the right way.
+    fn is_fine(&self) -> bool {
+        self.is_reliable && !self.place.is_rejected
+    }
+
+    /// Returns the triangles by which islands are joined.
+    fn nodes(&self) -> [Node; 2] {
+        let first = 2 * usize::from(self.place.is_unserved);
+        [(first, self.pair[0]), (first + 1, self.pair[1])]
+    }
+
     /// Returns the side of a sheet to which the contact pushes: 1 front, -1 back, 0 neither.
     fn side(&self) -> f64 {
         let along = self.sheet.map_or(0.0, |sheet| sheet.away.dot(self.normal));
@@ -224,8 +246,6 @@ impl OverlapIslands {
     pub(super) fn clear(&mut self) {
         self.crossings.clear();
         self.touching.clear();
-        self.rejected.clear();
-        self.unserved.clear();
         self.separation = None;
     }
 
@@ -237,7 +257,7 @@ impl OverlapIslands {
 
     /// Returns the triangles of shape `i` with final contacts, and the normals of these.
     pub(super) fn final_normals(&self, i: usize) -> impl Iterator<Item = (u32, DVec3)> {
-        let fine = self.crossings.iter().filter(|crossing| self.is_fine(crossing));
+        let fine = self.crossings.iter().filter(|crossing| crossing.is_fine());
         fine.map(move |crossing| (crossing.pair[i], crossing.normal))
     }
 
@@ -250,7 +270,7 @@ impl OverlapIslands {
 
     /// Returns a crossing, by its index, unless its contact is final.
     pub(super) fn open(&self, index: usize) -> Option<Crossing> {
-        Some(self.crossings[index]).filter(|crossing| !self.is_fine(crossing))
+        Some(self.crossings[index]).filter(|crossing| !crossing.is_fine())
     }
 
     /// Returns true if pairs cross, and reliable contacts push about as much one way as the other, or are
@@ -273,22 +293,18 @@ impl OverlapIslands {
     ) -> bool {
         self.reject_far_sides();
         self.separation = separation;
-        let is_against = |crossing: &&Crossing| {
-            let is_against = |way: DVec3| crossing.normal.dot(way) < -SAME_SIDE;
-            crossing.is_reliable && separation.is_some_and(is_against)
-        };
-        let against = self.crossings.iter().filter(is_against).map(|crossing| crossing.pair);
-        self.rejected.extend(against);
+        for Crossing { normal, place, .. } in &mut self.crossings {
+            place.is_rejected |= !leads_apart(*normal, separation);
+        }
         self.crossings.sort_unstable_by_key(|crossing| crossing.pair);
         let pushes_to = |side: f64| self.crossings.iter().any(|crossing| crossing.side() == side);
         let has_both_sides = pushes_to(1.0) && pushes_to(-1.0);
-        let is_good = |crossing: &Crossing| self.is_fine(crossing) && crossing.far_depth() == 0.0;
+        let is_good = |crossing: &Crossing| crossing.is_fine() && crossing.far_depth() == 0.0;
         if !has_both_sides && self.crossings.iter().all(is_good) {
             return false;
         }
         self.join();
-        self.find_unserved(overlap);
-        if !self.unserved.is_empty() {
+        if self.find_unserved(overlap) {
             self.join();
         }
         self.sum_support();
@@ -297,96 +313,83 @@ impl OverlapIslands {
             self.sum_support();
         }
         let needs_more = |support: &Support| !support.is_enough() || support.farthest > 0.0;
-        !self.rejected.is_empty() || self.support.values().any(needs_more)
+        let is_rejected = |crossing: &Crossing| crossing.place.is_rejected;
+        self.crossings.iter().any(is_rejected) || self.support.iter().any(needs_more)
     }
 
-    /// Joins the triangles of crossings to islands.
+    /// Joins crossings with common triangles to islands.
     fn join(&mut self) {
-        self.islands.clear();
-        let crossing = self.crossings.iter().map(|crossing| &crossing.pair);
+        let Self { crossings, touching, islands, with_triangle, .. } = self;
+        islands.reset(crossings.len() + touching.len());
+        with_triangle.clear();
         // Triangles on opposite sides of crossing edges only touch.
-        for pair in crossing.chain(&self.touching) {
-            let [node1, node2] = self.nodes(*pair);
-            self.islands.join(node1, node2);
+        let touching = touching.iter().map(|&[one, two]| [(0, one), (1, two)]);
+        let nodes = crossings.iter().map(Crossing::nodes).chain(touching);
+        for (index, node) in nodes.enumerate().flat_map(|(i, nodes)| nodes.map(|node| (i, node))) {
+            islands.join(*with_triangle.entry(node).or_insert(index), index);
+        }
+        for (index, crossing) in crossings.iter_mut().enumerate() {
+            crossing.place.island = islands.first(index);
         }
     }
 
-    /// Finds the pairs that no reliable contact of their island separates. A contact with a floor does not part a body from a
-    /// wall, though one triangle of the body may cross both.
-    fn find_unserved(&mut self, overlap: impl Fn([u32; 2], DVec3) -> Overlap) {
-        let Self { crossings, rejected, unserved, ways, islands, .. } = self;
+    /// Finds the pairs that no reliable contact of their island separates, and returns true if there are any. A contact with a
+    /// floor does not part a body from a wall, though one triangle of the body may cross both.
+    fn find_unserved(&mut self, overlap: impl Fn([u32; 2], DVec3) -> Overlap) -> bool {
+        let Self { crossings, ways, .. } = self;
         ways.clear();
-        let is_fine = |one: &Crossing| one.is_reliable && !rejected.contains(&one.pair);
-        for Crossing { pair, normal, greatest, .. } in crossings.iter().filter(|one| is_fine(one)) {
-            let known = ways.entry(islands.first((0, pair[0]))).or_default();
-            if known.iter().all(|(way, _)| way.dot(*normal) < SAME_DIRECTION) {
+        for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
+            let known = ways.entry(crossing.place.island).or_default();
+            if known.iter().all(|(way, _)| way.dot(crossing.normal) < SAME_DIRECTION) {
                 // Pairs that need a way beyond the limit get a closer look.
-                let _ = known.try_push((*normal, *greatest));
+                let _ = known.try_push((crossing.normal, crossing.greatest));
             }
         }
-        for Crossing { pair, .. } in &*crossings {
-            for (way, length) in ways.get_mut(&islands.first((0, pair[0]))).into_iter().flatten() {
+        for Crossing { pair, place, .. } in &*crossings {
+            for (way, length) in ways.get_mut(&place.island).into_iter().flatten() {
                 let overlap = overlap(*pair, *way);
                 *length = length.max(if overlap.leads_out { overlap.length } else { 0.0 });
             }
         }
-        for Crossing { pair, .. } in crossings.iter().filter(|one| !is_fine(one)) {
-            let Some(known) = ways.get(&islands.first((0, pair[0]))) else { continue };
-            if known.iter().all(|(way, length)| overlap(*pair, *way).length > *length) {
-                unserved.insert(*pair);
-            }
+        let mut found = false;
+        for crossing in crossings.iter_mut().filter(|crossing| !crossing.is_fine()) {
+            let Some(known) = ways.get(&crossing.place.island) else { continue };
+            let is_longer =
+                |(way, length): &(DVec3, f64)| overlap(crossing.pair, *way).length > *length;
+            crossing.place.is_unserved = known.iter().all(is_longer);
+            found |= crossing.place.is_unserved;
         }
+        found
     }
 
-    /// Returns the triangles of a pair by which islands are joined.
-    fn nodes(&self, pair: [u32; 2]) -> [Node; 2] {
-        let first = 2 * usize::from(self.unserved.contains(&pair));
-        [(first, pair[0]), (first + 1, pair[1])]
-    }
-
-    /// Returns the triangle that stands for the island of a pair.
-    fn island(&mut self, pair: [u32; 2]) -> Node {
-        let [node, _] = self.nodes(pair);
-        self.islands.first(node)
+    /// Returns the crossing of a pair.
+    fn crossing(&self, pair: [u32; 2]) -> Option<&Crossing> {
+        let index = self.crossings.binary_search_by_key(&pair, |crossing| crossing.pair);
+        index.ok().map(|index| &self.crossings[index])
     }
 
     /// Returns true if a second pass does not change the contact of a pair.
     pub(super) fn is_final(&self, pair: [u32; 2]) -> bool {
-        let index = self.crossings.binary_search_by_key(&pair, |crossing| crossing.pair);
-        index.map_or(true, |index| self.is_fine(&self.crossings[index]))
+        self.crossing(pair).is_none_or(Crossing::is_fine)
     }
 
-    /// Returns true if the contact of a pair is reliable and pushes the right way.
-    fn is_fine(&self, crossing: &Crossing) -> bool {
-        crossing.is_reliable && !self.rejected.contains(&crossing.pair)
-    }
-
-    /// Returns the support of the island of a pair, if that has too few reliable contacts.
-    pub(super) fn open_support(&mut self, pair: [u32; 2]) -> Option<Support> {
-        let first = self.island(pair);
-        self.support.get(&first).copied().filter(|support| !support.is_enough())
+    /// Returns the support of the island of a crossing, if that has too few reliable contacts.
+    pub(super) fn open_support(&self, crossing: &Crossing) -> Option<Support> {
+        Some(self.support[crossing.place.island]).filter(|support| !support.is_enough())
     }
 
     /// Replaces `list` by the crossings in islands whose contacts are too few or push far, one island after another. Crossings
     /// with an unknown outer side are left out.
-    pub(super) fn list_unsupported(&mut self, list: &mut Vec<Unsupported>) {
+    pub(super) fn list_unsupported(&self, list: &mut Vec<Unsupported>) {
         list.clear();
-        for index in 0..self.crossings.len() {
-            let crossing = self.crossings[index];
-            let Crossing { pair, is_crossing, .. } = crossing;
-            let Some(outward) = crossing.outward_signs().filter(|_| is_crossing) else { continue };
-            let island = self.island(pair);
-            let support = self.support.get(&island).copied().unwrap_or_default();
+        for crossing in self.crossings.iter().filter(|crossing| crossing.is_crossing) {
+            let Some(outward) = crossing.outward_signs() else { continue };
+            let Crossing { pair, is_sheet, place: IslandPlace { island, .. }, .. } = *crossing;
+            let support = self.support[island];
             let most = if support.is_enough() { support.farthest } else { f64::INFINITY };
             if most > 0.0 {
-                list.push(Unsupported {
-                    island,
-                    pair,
-                    has_contact: self.is_fine(&crossing),
-                    most,
-                    outward,
-                    is_sheet: crossing.is_sheet,
-                });
+                let has_contact = crossing.is_fine();
+                list.push(Unsupported { island, pair, has_contact, most, outward, is_sheet });
             }
         }
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
@@ -394,19 +397,17 @@ impl OverlapIslands {
 
     /// Returns true if the way out of an island is known.
     pub(super) fn has_ways(&self) -> bool {
-        self.support.values().any(|support| support.way.is_some())
+        self.support.iter().any(|support| support.way.is_some())
     }
 
-    /// Returns the way out of the overlap that a pair belongs to, if it is known.
-    pub(super) fn way(&mut self, pair: [u32; 2]) -> Option<IslandWay> {
-        let first = self.island(pair);
-        self.support.get(&first)?.way
+    /// Returns the way out of the overlap that a crossing pair belongs to, if it is known.
+    pub(super) fn way(&self, pair: [u32; 2]) -> Option<IslandWay> {
+        self.support[self.crossing(pair)?.place.island].way
     }
 
     /// Sets the way out of the overlap of an island.
-    pub(super) fn set_way(&mut self, pair: [u32; 2], way: IslandWay) {
-        let first = self.island(pair);
-        self.support.entry(first).or_default().way = Some(way);
+    pub(super) fn set_way(&mut self, island: usize, way: IslandWay) {
+        self.support[island].way = Some(way);
     }
 
     /// Returns true if a contact does not push against the direction in which the bodies separate.
@@ -417,29 +418,28 @@ impl OverlapIslands {
     /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against
     /// each other, the deeper one. (On a sheet the whole island goes to one side instead.)
     fn reject_far_sides(&mut self) {
-        let Self { crossings, rejected, deepest, .. } = self;
+        let Self { crossings, deepest, .. } = self;
         for side in 0..2 {
             let by_depth = |a: &Crossing, b: &Crossing| {
                 let by_depth = b.depth.total_cmp(&a.depth);
                 a.pair[side].cmp(&b.pair[side]).then(by_depth).then(a.pair.cmp(&b.pair))
             };
             crossings.sort_unstable_by(by_depth);
-            for of_one in crossings.chunk_by(|a, b| a.pair[side] == b.pair[side]) {
+            for of_one in crossings.chunk_by_mut(|a, b| a.pair[side] == b.pair[side]) {
                 deepest.clear();
                 for Crossing { normal, depth, .. } in of_one.iter().filter(|one| one.is_reliable) {
                     if deepest.iter().all(|(known, _)| known.dot(*normal) < SAME_DIRECTION) {
                         deepest.push((*normal, *depth));
                     }
                 }
-                let of_bodies = |one: &&Crossing| one.is_reliable && one.sheet.is_none();
-                for crossing in of_one.iter().filter(of_bodies) {
+                let of_bodies = |one: &&mut Crossing| one.is_reliable && one.sheet.is_none();
+                for Crossing { normal, place, .. } in of_one.iter_mut().filter(of_bodies) {
                     let depth = |sign: f64| {
-                        let like = |way: DVec3| sign * way.dot(crossing.normal) > SAME_SIDE;
+                        let like = |way: DVec3| sign * way.dot(*normal) > SAME_SIDE;
                         deepest.iter().find(|(normal, _)| like(*normal)).map(|(_, depth)| *depth)
                     };
-                    if depth(-1.0).is_some_and(|against| Some(against) < depth(1.0)) {
-                        rejected.insert(crossing.pair);
-                    }
+                    place.is_rejected |=
+                        depth(-1.0).is_some_and(|against| Some(against) < depth(1.0));
                 }
             }
         }
@@ -448,11 +448,10 @@ impl OverlapIslands {
     /// Sums the support of each island.
     fn sum_support(&mut self) {
         self.support.clear();
+        self.support.resize(self.crossings.len(), Support::default());
         for crossing in &self.crossings {
-            let is_fine = self.is_fine(crossing);
-            let [node, _] = self.nodes(crossing.pair);
-            let first = self.islands.first(node);
-            let support = self.support.entry(first).or_default();
+            let is_fine = crossing.is_fine();
+            let support = &mut self.support[crossing.place.island];
             support.separation = self.separation;
             support.pairs += 1;
             support.reliable += u32::from(is_fine);
@@ -460,7 +459,7 @@ impl OverlapIslands {
                 support.farthest.max(if is_fine { crossing.far_depth() } else { 0.0 });
             support.normals += if is_fine { crossing.normal } else { DVec3::ZERO };
             // The side of a sheet is known, so others may be added.
-            support.is_thin |= crossing.sheet.is_none() && self.rejected.contains(&crossing.pair);
+            support.is_thin |= crossing.sheet.is_none() && crossing.place.is_rejected;
             support.sheet_side +=
                 crossing.sheet.map_or(DVec3::ZERO, |sheet| sheet.height * sheet.away);
             support.sides[0] |= is_fine && crossing.side() > 0.0;
@@ -472,19 +471,17 @@ impl OverlapIslands {
     /// push to both sides or are too few. The right side is that of the middle of the solid.
     /// Returns true if there were any.
     fn reject_sides_of_sheets(&mut self) -> bool {
-        let before = self.rejected.len();
-        for crossing in &self.crossings {
-            let [node, _] = self.nodes(crossing.pair);
-            let first = self.islands.first(node);
-            let is_doubtful =
-                |support: &&Support| support.sides == [true; 2] || !support.is_enough();
-            let side = self.support.get(&first).filter(is_doubtful).map(|of| of.sheet_side);
-            let is_against = |side: DVec3| crossing.normal.dot(side) < -SAME_SIDE * side.length();
-            if crossing.is_reliable && side.is_some_and(is_against) {
-                self.rejected.insert(crossing.pair);
+        let mut found = false;
+        for Crossing { normal, is_reliable, place, .. } in &mut self.crossings {
+            let support = &self.support[place.island];
+            let is_doubtful = support.sides == [true; 2] || !support.is_enough();
+            let side = support.sheet_side;
+            let is_against = normal.dot(side) < -SAME_SIDE * side.length();
+            if *is_reliable && is_doubtful && is_against && !place.is_rejected {
+                (place.is_rejected, found) = (true, true);
             }
         }
-        self.rejected.len() > before
+        found
     }
 }
 

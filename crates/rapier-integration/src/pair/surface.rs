@@ -18,7 +18,7 @@ use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleCon
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
-use super::islands::{Crossing, Support};
+use super::islands::{Crossing, IslandPlace, Support};
 use super::triangle_contacts::in_local;
 use super::triangle_shape::ShapeFacets;
 use super::triangle_shapes::{
@@ -262,6 +262,7 @@ impl<'a> SurfaceFilter<'a> {
             outward,
             is_sheet: [0, 1].map(|i| outward[i] != Some(self.shapes[i].outward())),
             sheet,
+            place: IslandPlace::default(),
         };
         let source = ContactSource::OutwardAxis;
         Verdict::Crossing(crossing, good.map(|contact| TriangleSurfaceContact { contact, source }))

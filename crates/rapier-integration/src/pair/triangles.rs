@@ -375,7 +375,7 @@ impl TriangleQuery<'_> {
         deep::remove_farther(&self.shapes, islands, contacts);
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
-            let Some(support) = islands.open_support(crossing.pair) else { continue };
+            let Some(support) = islands.open_support(&crossing) else { continue };
             let contact = self.shapes.with_filter(crossing.pair, |filter| {
                 filter.supporting_contact(&crossing, support, clipped)
             });
