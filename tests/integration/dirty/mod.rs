@@ -15,6 +15,8 @@ use crate::worlds::on_ground;
 mod doubles;
 /// Meshes that fall on flat grounds.
 mod falls;
+/// Single triangles that are wound the other way.
+mod flipped;
 /// Bodies that slide and roll over floors.
 mod floors;
 /// Levels of boxes that overlap.

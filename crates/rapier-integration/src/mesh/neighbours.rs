@@ -22,6 +22,8 @@ pub(crate) struct MeshFacets<'a> {
     pub(super) mesh: &'a TriMesh,
     pub(super) twins: Twins<'a>,
     pub(super) memo: &'a PlaceMemo,
+    /// Side of all triangles but walls within. `None` if rays find the sides.
+    pub(super) declared: Option<Side>,
 }
 
 /// Twins and flags of the triangles of a mesh.
@@ -65,6 +67,17 @@ impl MeshFacets<'_> {
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
         })
+    }
+
+    /// Returns what counts as the side of a triangle. A double counts as a wall within, so it has no contacts.
+    #[inline]
+    pub(super) fn declared_side(self, triangle: u32) -> Side {
+        match self.declared {
+            _ if self.is_double(triangle) => Side::Inner,
+            Some(Side::Sheet) => Side::Sheet,
+            Some(declared) if self.side(triangle) != Side::Inner => declared,
+            _ => self.side(triangle),
+        }
     }
 
     /// Returns the sign of the winding number of a closed mesh around a point, if two rays agree.
@@ -191,6 +204,10 @@ impl Facets for MeshFacets<'_> {
         };
         let near = self.mesh.bvh().leaves(|node| node.intersects(&near));
         let _ = near.filter(|triangle| !is_double(triangle)).try_for_each(visit);
+    }
+
+    fn outward(&self, triangle: u32) -> f64 {
+        self.declared_side(triangle).outward().unwrap_or(0.0)
     }
 
     /// Meshes that are not analysed as a whole have none, as each needs a search for neighbours.
@@ -368,7 +385,8 @@ const IMPACT_RISE: f64 = 1.0e-4;
 /// direction.
 pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, direction: DVec3) -> bool {
     let (known, memo) = Default::default();
-    let facets = MeshFacets { mesh, twins: Twins::Near(&known), memo: &memo };
+    let twins = Twins::Near(&known);
+    let facets = MeshFacets { mesh, twins, memo: &memo, declared: Some(Side::Sheet) };
     !Around { facets, side: Side::Sheet }.rises(triangle, place, direction, IMPACT_RISE)
 }
 
@@ -402,7 +420,7 @@ mod tests {
             let whole = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
             let known = Neighbours::default();
             let (twins, memo) = (Twins::Near(&known), &PlaceMemo::default());
-            let facets = MeshFacets { mesh: &mesh, twins, memo };
+            let facets = MeshFacets { mesh: &mesh, twins, memo, declared: None };
             for half_edge in 0..3 * mesh.indices().len() as u32 {
                 let twin = whole.twin(half_edge);
                 assert_eq!(facets.twin(half_edge), twin, "{half_edge} of {:?}", mesh.indices());
@@ -446,7 +464,7 @@ mod tests {
             assert!(surface.has_small_components());
             let flags: Vec<_> = mesh.indices().iter().map(|_| TriangleFlags::default()).collect();
             let (twins, memo) = (Twins::All(&surface, &flags), &PlaceMemo::default());
-            let facets = MeshFacets { mesh: &mesh, twins, memo };
+            let facets = MeshFacets { mesh: &mesh, twins, memo, declared: None };
             for triangle in 0..flags.len() as u32 {
                 let found = facets.side(triangle);
                 let by_rays = side(&MeshRays(&mesh), Some(&surface), triangle, memo);

@@ -137,7 +137,13 @@ impl RigidMesh {
         self.neighbours.limit();
         let is_whole = self.is_registered || is_analysed(view.mesh.indices().len());
         let near = (!is_whole).then_some(&self.neighbours);
-        LazySurface { data: &self.data, view, near, memo: PlaceMemo::default() }
+        LazySurface {
+            data: &self.data,
+            view,
+            near,
+            declared: OnceLock::new(),
+            memo: PlaceMemo::default(),
+        }
     }
 }
 
@@ -147,6 +153,7 @@ pub(crate) struct LazySurface<'a> {
     view: &'a MeshView<'a>,
     /// Adjacency near contacts, if the mesh is too large to analyse as a whole.
     near: Option<&'a Neighbours>,
+    declared: OnceLock<(SurfaceKind, Option<Side>)>,
     memo: PlaceMemo,
 }
 
@@ -170,27 +177,34 @@ impl<'a> LazySurface<'a> {
             // Computes the flags as well.
             None => Twins::All(store.surface(mesh, data), data.flags()),
         };
-        MeshFacets { mesh, twins, memo: &self.memo }
+        MeshFacets { mesh, twins, memo: &self.memo, declared: self.declared().1 }
     }
 
-    /// Returns the kind of the mesh, and true if a user declared it.
+    /// Returns the kind of the mesh, and the [declared](MeshFacets::declared) side of its triangles. Analyses the mesh if it is
+    /// analysed as a whole.
     #[inline]
-    fn declared_kind(&self) -> (SurfaceKind, bool) {
-        (self.kind(), self.data().declared_kind().is_some())
+    fn declared(&self) -> (SurfaceKind, Option<Side>) {
+        *self.declared.get_or_init(|| {
+            let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
+            let kind = data.kind().unwrap_or_else(|| match self.near {
+                Some(_) => data.kind_by_rays(mesh),
+                None => store.surface(mesh, data).kind(),
+            });
+            let is_declared = data.declared_kind().is_some();
+            let side = match kind {
+                SurfaceKind::Sheet => Some(Side::Sheet),
+                SurfaceKind::Solid => is_declared.then_some(Side::Outer),
+                SurfaceKind::InsideOut => is_declared.then_some(Side::Turned),
+            };
+            (kind, side)
+        })
     }
 
-    /// Returns the surface around a triangle. A double counts as a wall within, so it has no contacts.
+    /// Returns the surface around a triangle.
     #[inline]
     pub(crate) fn around(&self, triangle: u32) -> Around<MeshFacets<'_>> {
-        let (facets, (kind, is_declared)) = (self.facets(), self.declared_kind());
-        let side = match kind {
-            _ if facets.is_double(triangle) => Side::Inner,
-            SurfaceKind::Sheet => Side::Sheet,
-            _ if !is_declared || facets.side(triangle) == Side::Inner => facets.side(triangle),
-            SurfaceKind::Solid => Side::Outer,
-            SurfaceKind::InsideOut => Side::Turned,
-        };
-        Around { facets, side }
+        let facets = self.facets();
+        Around { facets, side: facets.declared_side(triangle) }
     }
 
     /// Returns the triangle nearest to a point, and the nearest point. Also returns the cosine between the direction to
@@ -217,8 +231,7 @@ impl<'a> LazySurface<'a> {
 
     /// Returns true if a user declared that the mesh is a solid.
     pub(crate) fn is_declared_solid(&self) -> bool {
-        let (kind, is_declared) = self.declared_kind();
-        is_declared && kind == SurfaceKind::Solid
+        self.data().declared_kind() == Some(SurfaceKind::Solid)
     }
 
     /// Returns the tips of the mesh, and the half-edges that start there.
@@ -232,14 +245,10 @@ impl<'a> LazySurface<'a> {
         self.data.get()?.surface().filter(|surface| surface.has_doubles())
     }
 
-    /// Returns the kind of the mesh. Analyses the mesh if it is analysed as a whole.
+    /// Returns the kind of the mesh.
     #[inline]
     pub(crate) fn kind(&self) -> SurfaceKind {
-        let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
-        data.kind().unwrap_or_else(|| match self.near {
-            Some(_) => data.kind_by_rays(mesh),
-            None => store.surface(mesh, data).kind(),
-        })
+        self.declared().0
     }
 }
 

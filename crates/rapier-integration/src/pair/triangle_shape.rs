@@ -305,6 +305,13 @@ impl Facets for ShapeFacets<'_> {
         }
     }
 
+    fn outward(&self, triangle: u32) -> f64 {
+        match self {
+            Self::Mesh(mesh) => mesh.outward(triangle),
+            Self::Field(field) => field.outward(triangle),
+        }
+    }
+
     #[inline]
     fn cones(&self, triangle: u32) -> MinimumCones {
         match self {

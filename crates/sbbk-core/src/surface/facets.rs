@@ -25,6 +25,11 @@ pub trait Facets {
     /// Calls `visit` with all triangles near the box between two corners, to find strays. May end when it breaks.
     fn near(&self, _corners: [DVec3; 2], _visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
 
+    /// Sign with which the normal of a triangle leads out of the body; 0 unless the body is on one side.
+    fn outward(&self, _triangle: u32) -> f64 {
+        1.0
+    }
+
     /// Bounds of the directions that may be local minima at a triangle. They spare the look at its neighbours.
     fn cones(&self, _triangle: u32) -> MinimumCones {
         MinimumCones::ALL

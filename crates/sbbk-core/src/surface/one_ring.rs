@@ -69,7 +69,7 @@ impl<F: Facets> Around<F> {
         let place = contact.map(|(place, _)| place);
         let slopes = self.all_slopes(triangle, feature, direction, place);
         // The memory is for triangles of all sides.
-        (!self.is_solid() || self.outward() * slopes.height >= 0.0)
+        (!self.is_solid() || self.height_out(triangle, &slopes) >= 0.0)
             && (slopes.rise <= FLAT * FLAT
                 || !self.is_exceeded(triangle, feature, slopes, most, place))
     }
@@ -107,7 +107,7 @@ impl<F: Facets> Around<F> {
     /// sine is above `most`. Looks at few triangles where a crowd meets.
     pub fn rises(&self, triangle: u32, place: DVec3, direction: DVec3, most: f64) -> bool {
         let mut slopes = Slopes::default();
-        self.visit_touching(triangle, place, CROWD, |_, ends| {
+        self.visit_touching(triangle, place, CROWD, |_, _, ends| {
             ends.for_each(|end| slopes.add(end, direction));
         });
         slopes.rise > most * most
@@ -142,7 +142,7 @@ impl<F: Facets> Around<F> {
         let first = half_edge(triangle, feature);
         let ends = [0, usize::from(!is_vertex)].map(|i| self.corner(first, i));
         let mut has_strays = false;
-        self.visit_touching(triangle, place, usize::MAX, |corners, _| {
+        self.visit_touching(triangle, place, usize::MAX, |_, corners, _| {
             let is_at = |corner: &DVec3, end: &DVec3| {
                 let off = *corner + place - *end;
                 off.length_squared() <= ROUNDING * ROUNDING * place.length_squared()
@@ -181,7 +181,7 @@ impl<F: Facets> Around<F> {
         });
         if count > LONG || !is_closed && !self.facets.is_whole(triangle, feature) {
             let slopes = self.all_slopes(triangle, feature, direction, None);
-            return self.outward() * slopes.height < 0.0;
+            return self.height_out(triangle, &slopes) < 0.0;
         }
         self.leads_in(triangle, feature, direction, &signs)
     }
@@ -198,6 +198,11 @@ impl<F: Facets> Around<F> {
         };
         feature == Feature::Face
             || self.facets.is_whole(triangle, feature) && self.visit(triangle, feature, is_behind)
+    }
+
+    /// Returns the height of slopes out of the solid. A body that is in a room has the solid on the other side.
+    fn height_out(&self, triangle: u32, slopes: &Slopes) -> f64 {
+        self.outward() * self.facets.outward(triangle) * slopes.height
     }
 
     /// Returns true if a direction leads into the solid, by its heights over the triangles of a one-ring.
@@ -248,7 +253,8 @@ impl<F: Facets> Around<F> {
     ) -> Slopes {
         let place = self.place(triangle, feature, place);
         let (triangle, feature, ring) = self.first_of_ring(triangle, feature);
-        PlaceMemo::slopes(self.facets.memo(), ring, place, direction, |direction| {
+        let key = (ring, self.is_solid());
+        PlaceMemo::slopes(self.facets.memo(), key, place, direction, |direction| {
             self.find_slopes(triangle, feature, direction, place)
         })
     }
@@ -262,6 +268,7 @@ impl<F: Facets> Around<F> {
     ) -> (Slopes, usize) {
         let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
         let (mut count, mut area) = (0, DVec3::ZERO);
+        let outward = |triangle| if self.is_solid() { self.facets.outward(triangle) } else { 1.0 };
         let is_closed = self.visit(triangle, feature, |wedge| {
             wedge.edges.into_iter().for_each(|edge| slopes.add(edge, direction));
             heights.add(wedge.area(), wedge.angle(feature), direction);
@@ -277,18 +284,20 @@ impl<F: Facets> Around<F> {
             });
             slopes.bend = Some(bend.doubled());
         }
+        // Triangles of a one-ring have one winding.
+        let mut height = outward(triangle) * heights.sum();
         if !self.facets.is_whole(triangle, feature) {
             let mut all = Heights::default();
-            self.visit_touching(triangle, place, usize::MAX, |corners, ends| {
+            self.visit_touching(triangle, place, usize::MAX, |other, corners, ends| {
                 let ends: ArrayVec<DVec3, 3> = ends.collect();
                 ends.iter().for_each(|end| slopes.add(*end, direction));
                 let angle = if let [u, v] = ends[..] { angle(u, v) } else { PI };
-                all.add(area_vector(corners), angle, direction);
+                all.add(outward(other) * area_vector(corners), angle, direction);
                 count += 1;
             });
-            heights = if is_closed { heights } else { all };
+            height = if is_closed { height } else { all.sum() };
         }
-        (Slopes { height: heights.sum(), ..slopes }, count)
+        (Slopes { height, ..slopes }, count)
     }
 
     /// Returns true if the surface at a point rises more than it bends there.
@@ -311,7 +320,7 @@ impl<F: Facets> Around<F> {
         });
         if bend.is_exceeded(rise, most) && !self.facets.is_whole(triangle, feature) {
             let place = self.place(triangle, feature, place);
-            self.visit_touching(triangle, place, usize::MAX, |_, ends| {
+            self.visit_touching(triangle, place, usize::MAX, |_, _, ends| {
                 ends.for_each(|end| bend.add(end))
             });
         }
@@ -328,21 +337,21 @@ impl<F: Facets> Around<F> {
         }
     }
 
-    /// Calls `visit` for each triangle that touches a place. `visit` gets the three corners, seen from the place, and
+    /// Calls `visit` for each triangle that touches a place. `visit` also gets the three corners, seen from the place, and
     /// the corners that are not at the place. Ends after `most` triangles near the place.
     fn visit_touching(
         &self,
         triangle: u32,
         place: DVec3,
         mut most: usize,
-        mut visit: impl FnMut(&[DVec3; 3], &mut dyn Iterator<Item = DVec3>),
+        mut visit: impl FnMut(u32, &[DVec3; 3], &mut dyn Iterator<Item = DVec3>),
     ) {
         let seam = seam(&each(|i| self.corner(3 * triangle, i)));
         self.facets.near([place - seam, place + seam], &mut |other| {
             let corners = each(|i| self.corner(3 * other, i) - place);
             if touches(&corners, [DVec3::ZERO; 2], seam) {
                 let is_far = |corner: &DVec3| corner.length_squared() > seam * seam;
-                visit(&corners, &mut corners.into_iter().filter(is_far));
+                visit(other, &corners, &mut corners.into_iter().filter(is_far));
             }
             // Facets may go on after a break.
             most = most.saturating_sub(1);

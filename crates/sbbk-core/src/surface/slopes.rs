@@ -32,7 +32,7 @@ pub(super) const LONG: usize = 32;
 pub(super) struct Slopes {
     /// Greatest slope towards the direction, as the square of a sine.
     pub(super) rise: f64,
-    /// Height of the direction along the [pseudo-normal](Heights).
+    /// Height of the direction along the [pseudo-normal](Heights) out of the body.
     pub(super) height: f64,
     /// The bend of a long one-ring: twice that from its mean plane.
     pub(super) bend: Option<Bend>,
@@ -120,7 +120,7 @@ impl<K: Eq + Hash, V: Copy> Memo<K, V> {
 pub struct PlaceMemo {
     /// The least half-edge of a long one-ring, by half-edge.
     rings: Memo<u32, u32>,
-    slopes: Memo<(u32, [i64; 6]), Slopes>,
+    slopes: Memo<((u32, bool), [i64; 6]), Slopes>,
     borders: Memo<(u32, [u64; 3]), bool>,
     walls: Memo<u32, (bool, i64)>,
 }
@@ -143,10 +143,10 @@ impl PlaceMemo {
     }
 
     /// Returns the slopes at a place along a direction, which is rounded. Keeps those for which `find` has
-    /// looked at many triangles. `ring` is a number of the one-ring.
+    /// looked at many triangles. `ring` has a number of the one-ring, and whether the triangle is of a solid.
     pub(super) fn slopes(
         memo: Option<&Self>,
-        ring: u32,
+        ring: (u32, bool),
         place: DVec3,
         direction: DVec3,
         find: impl FnOnce(DVec3) -> (Slopes, usize),
