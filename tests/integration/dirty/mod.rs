@@ -13,6 +13,8 @@ use crate::worlds::on_ground;
 
 /// Meshes with triangles that are there several times.
 mod doubles;
+/// Edges with T-junctions.
+mod edges;
 /// Meshes that fall on flat grounds.
 mod falls;
 /// Single triangles that are wound the other way.

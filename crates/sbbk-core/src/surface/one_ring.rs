@@ -29,8 +29,9 @@ pub struct Around<F> {
 /// along walls stop where many triangles meet.
 const CROWD: usize = 64;
 
-/// Rounding of a corner that was moved to a place and back, as a share of the coordinates.
-const ROUNDING: f64 = 1.0e-14;
+/// Distance from the ends of an edge at which other triangles are sought along the edge, as a share of its length. Higher: a T-junction near
+/// an end makes a border. Lower: edges of slivers go on in their neighbours.
+const OFF_ENDS: f64 = 0.1;
 
 impl<F: Facets> Around<F> {
     /// True if no triangle of the one-ring of a feature comes nearer to the other body in a unit
@@ -113,8 +114,8 @@ impl<F: Facets> Around<F> {
         slopes.rise > most * most
     }
 
-    /// True if a surface ends at an edge or a vertex. A triangle there has an edge without a twin, and
-    /// no stray touches `place`.
+    /// True if a surface ends at an edge or a vertex. A triangle there has an edge without a twin, along which no other triangle
+    /// goes on.
     pub fn is_border(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {
         match feature {
             Feature::Edge(i) if self.facets.twin(3 * triangle + u32::from(i)).is_none() => {}
@@ -127,31 +128,37 @@ impl<F: Facets> Around<F> {
         PlaceMemo::is_border(self.facets.memo(), ring, place, find)
     }
 
-    /// Returns true if a one-ring is open and all triangles at a place share a corner of the feature.
-    /// Also returns the number of triangles there.
+    /// Returns true if an edge without a twin is a border at a place, or if one at a vertex is. Also returns the number of
+    /// triangles there.
     fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> (bool, usize) {
-        let is_vertex = matches!(feature, Feature::Vertex(_));
-        let mut count = 0;
-        let is_closed = self.visit(triangle, feature, |_| {
-            count += 1;
-            ControlFlow::Continue(())
-        });
-        if is_vertex && is_closed {
-            return (false, count);
-        }
+        let (mut borders, mut count) = (ArrayVec::<(u32, f64), 2>::new(), 0);
         let first = half_edge(triangle, feature);
-        let ends = [0, usize::from(!is_vertex)].map(|i| self.corner(first, i));
-        let mut has_strays = false;
-        self.visit_touching(triangle, place, usize::MAX, |_, corners, _| {
-            let is_at = |corner: &DVec3, end: &DVec3| {
-                let off = *corner + place - *end;
-                off.length_squared() <= ROUNDING * ROUNDING * place.length_squared()
-            };
-            let has_end = |end: &DVec3| corners.iter().any(|corner| is_at(corner, end));
-            has_strays |= !ends.iter().any(has_end);
-            count += 1;
-        });
-        (!has_strays, count)
+        if let Feature::Edge(_) = feature {
+            let [start, end] = [0, 1].map(|i| self.corner(first, i));
+            let at = (place - start).dot(end - start) / start.distance_squared(end);
+            borders.push((first, at.clamp(OFF_ENDS, 1.0 - OFF_ENDS)));
+        } else {
+            self.visit(triangle, feature, |Wedge { half_edge, .. }| {
+                let sides = [(half_edge, OFF_ENDS), (previous(half_edge), 1.0 - OFF_ENDS)];
+                let is_alone = |(side, _): &(u32, f64)| self.facets.twin(*side).is_none();
+                sides.into_iter().filter(is_alone).for_each(|side| _ = borders.try_push(side));
+                count += 1;
+                ControlFlow::Continue(())
+            });
+        }
+        let ends = |(side, at): (u32, f64)| {
+            let [start, end, third] = each(|i| self.corner(side, i));
+            let place = start.lerp(end, at);
+            let own = [start, end, third].map(|corner| corner - place);
+            let mut ends = true;
+            self.visit_touching(side / 3, place, usize::MAX, |other, corners, _| {
+                let is_double = own.iter().all(|corner| corners.contains(corner));
+                ends &= other == side / 3 || is_double;
+                count += 1;
+            });
+            ends
+        };
+        (borders.into_iter().any(ends), count)
     }
 
     /// True if the body is on one side of the triangle, and nothing on the other.
@@ -198,6 +205,11 @@ impl<F: Facets> Around<F> {
         };
         feature == Feature::Face
             || self.facets.is_whole(triangle, feature) && self.visit(triangle, feature, is_behind)
+    }
+
+    /// Returns the sign with which the normal of a triangle leads out of the solid: 0 for walls within, 1 for sheets.
+    fn outward_of(&self, triangle: u32) -> f64 {
+        if self.is_solid() { self.facets.outward(triangle) } else { 1.0 }
     }
 
     /// Returns the height of slopes out of the solid. A body that is in a room has the solid on the other side.
@@ -268,7 +280,7 @@ impl<F: Facets> Around<F> {
     ) -> (Slopes, usize) {
         let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
         let (mut count, mut area) = (0, DVec3::ZERO);
-        let outward = |triangle| if self.is_solid() { self.facets.outward(triangle) } else { 1.0 };
+        let outward = |triangle| self.outward_of(triangle);
         let is_closed = self.visit(triangle, feature, |wedge| {
             wedge.edges.into_iter().for_each(|edge| slopes.add(edge, direction));
             heights.add(wedge.area(), wedge.angle(feature), direction);
@@ -289,10 +301,15 @@ impl<F: Facets> Around<F> {
         if !self.facets.is_whole(triangle, feature) {
             let mut all = Heights::default();
             self.visit_touching(triangle, place, usize::MAX, |other, corners, ends| {
+                let outward = outward(other);
+                // Walls within are no surface.
+                if outward == 0.0 {
+                    return;
+                }
                 let ends: ArrayVec<DVec3, 3> = ends.collect();
                 ends.iter().for_each(|end| slopes.add(*end, direction));
                 let angle = if let [u, v] = ends[..] { angle(u, v) } else { PI };
-                all.add(outward(other) * area_vector(corners), angle, direction);
+                all.add(outward * area_vector(corners), angle, direction);
                 count += 1;
             });
             height = if is_closed { height } else { all.sum() };
@@ -320,8 +337,8 @@ impl<F: Facets> Around<F> {
         });
         if bend.is_exceeded(rise, most) && !self.facets.is_whole(triangle, feature) {
             let place = self.place(triangle, feature, place);
-            self.visit_touching(triangle, place, usize::MAX, |_, _, ends| {
-                ends.for_each(|end| bend.add(end))
+            self.visit_touching(triangle, place, usize::MAX, |other, _, ends| {
+                ends.filter(|_| self.outward_of(other) != 0.0).for_each(|end| bend.add(end))
             });
         }
         bend.is_exceeded(rise, most)

@@ -6,8 +6,8 @@ use std::cell::RefCell;
 use glamx::Vec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::surface::SurfaceKind;
 use sbbk_core::surface::strays::{self, touches};
+use sbbk_core::surface::{Around, Side, SurfaceKind};
 
 use super::contact::{NormalSource, PartContact};
 use super::ghosts::{GhostContacts, corner_key};
@@ -126,6 +126,9 @@ impl ConvexQuery<'_> {
         upright.extend(borders.iter().filter(|&&i| sources[i as usize] == i).filter_map(
             |&border| {
                 let (of, hit) = &contacts[border as usize];
+                if !self.is_border(*of, hit, scratch) {
+                    return None;
+                }
                 let upright =
                     self.with_pair(*of, scratch, |pair| pair.upright_at_border(&hit.contact));
                 let upright = upright.flatten()?;
@@ -138,6 +141,16 @@ impl ConvexQuery<'_> {
                 *hit = PartContact { contact, source: NormalSource::Border, ..*hit };
             }
         }
+    }
+
+    /// Returns true if the mesh ends at the feature of a contact, at which no other triangle has its edge. The other part of
+    /// a T-junction may go on there.
+    fn is_border(&self, of: [u32; 2], hit: &PartContact, scratch: &mut ConvexScratch) -> bool {
+        let Some(surface) = &self.surface else { return true };
+        let [triangle, _] = self.pair.mesh_place.swap(of);
+        let place = self.with_pair(of, scratch, |pair| pair.touched_place(&hit.contact)).flatten();
+        let around = Around { facets: surface.facets(), side: Side::Sheet };
+        place.is_none_or(|(place, _)| around.is_border(triangle, hit.feature, place.as_dvec3()))
     }
 
     /// Replaces contacts that a triangle [passes](GhostContacts::on_faces) by the least deep way out of the triangle.

@@ -46,8 +46,7 @@ impl<'a> Pair for ConvexPair<'a> {
     }
 
     fn open<'q>(&'q self, (known_mesh, part_data): &'q mut Self::State) -> Self::Query<'q> {
-        // A ball has one point, and rolls over walls within a mesh.
-        let needs_surface = self.config.leave_solids() || self.has_surface() && !self.is_ball();
+        let needs_surface = self.config.leave_solids() || self.has_surface();
         let surface = needs_surface.then(|| known_mesh.acquire(&self.mesh, false)).flatten();
         ConvexQuery { pair: self, part_data, surface }
     }
@@ -57,7 +56,7 @@ impl<'a> Pair for ConvexPair<'a> {
 pub(crate) struct ConvexQuery<'q> {
     pub(super) pair: &'q ConvexPair<'q>,
     pub(super) part_data: &'q PartData,
-    /// Surface of the mesh, for push-outs and walls within the mesh.
+    /// Surface of the mesh, for push-outs, borders and walls within the mesh.
     pub(super) surface: Option<LazySurface<'q>>,
 }
 
@@ -272,7 +271,9 @@ impl ConvexQuery<'_> {
         contacts: &mut ContactList<PartContact>,
         scratch: &mut ConvexScratch,
     ) {
-        let Some(surface) = &self.surface else { return };
+        // A ball has one point, and rolls over walls within a mesh.
+        let is_exempt = self.pair.is_ball() && !self.pair.config.leave_solids();
+        let Some(surface) = self.surface.as_ref().filter(|_| !is_exempt) else { return };
         let mut normals =
             contacts.iter().map(|(of, hit)| self.shared_normal(*of, &hit.contact, scratch));
         let Some(first) = normals.next() else { return };

@@ -1,0 +1,55 @@
+use glamx::Vec3;
+use rapier3d::geometry::SharedShape;
+use rapier3d::math::{Pose, Real};
+use sbbk_testkit::mesh::{self, Mesh};
+
+use crate::support::{Question, distance, every};
+
+/// Height of the bodies over the block.
+const GAP: Real = 0.006;
+
+/// A block with one triangle that is split at one of its edges.
+fn split_block(triangle: usize, edge: usize) -> Mesh {
+    let mut block = mesh::cuboid(Vec3::splat(0.5), 1);
+    let corners = block.triangles[triangle];
+    let [a, b, c] = [0, 1, 2].map(|i| corners[(edge + i) % 3]);
+    let [start, end] = [a, b].map(|corner| block.vertices[corner as usize]);
+    let middle = block.vertices.len() as u32;
+    block.vertices.push(start.lerp(end, 0.3));
+    block.triangles[triangle] = [a, middle, c];
+    block.triangles.push([middle, b, c]);
+    block
+}
+
+/// Bodies that come in over an edge of a block. Would catch an edge with a T-junction that counts as a border, and stops bodies
+/// above it.
+#[test]
+fn bodies_over_an_edge_with_a_t_junction_touch_nothing() {
+    let half = Vec3::new(0.1, 0.05, 0.08);
+    let bodies = [
+        ("cuboid", SharedShape::cuboid(half.x, half.y, half.z)),
+        ("cylinder", SharedShape::cylinder(half.y, half.x)),
+        ("ball", SharedShape::ball(half.y)),
+        ("mesh", mesh::cuboid(half, 1).shape()),
+    ];
+    let every = every();
+    let mut count = 0;
+    for (triangle, edge) in (0..12).flat_map(|triangle| [0, 1, 2].map(|edge| (triangle, edge))) {
+        let block = split_block(triangle, edge).shape();
+        for (name, body) in &bodies {
+            for step in 0..160 {
+                let x = -0.65 + 0.002 * step as Real;
+                for z in [-0.35, 0.05, 0.4] {
+                    let place = Vec3::new(x, 0.5 + half.y + GAP, z);
+                    let pose = Pose::from_translation(place);
+                    let found = Question::new(&*block.0, &*body.0, pose).fresh(&every);
+                    let least = found.iter().map(distance).fold(Real::INFINITY, Real::min);
+                    count += found.len();
+                    let what = format!("triangle {triangle}, edge {edge}, {name} at {place}");
+                    assert!(least > GAP - 1e-5, "{what}: {least}");
+                }
+            }
+        }
+    }
+    assert!(count > 10_000, "{count} contacts");
+}
