@@ -1,12 +1,21 @@
 //! Contacts at the borders of meshes.
 //!
 //! A body that slides from one floor onto the next has sunk in a little, and would run into the border of the
-//! next floor. So a border is met along the normal of its face by a body that is all on one side of the face.
+//! next floor. So a border is met along the normal of its face by a body that is all on one side of the face. Before
+//! the body touches the border, that way leads past it, and the border has no contact.
 //!
 //! The rim of an open box has borders, too. A lid just fits between its walls: it is on the inner side
 //! of each. But the normals of walls lead against each other, so no way is left, and the rim carries the lid.
 
 use glamx::DVec3;
+
+use super::triangle_shapes::NEAR_NORMAL;
+
+/// Returns true if the way along the normal of a face leads past its border. `distance`: to the border. `cosine`: between the way to
+/// the border and the normal.
+pub(super) fn is_past_border(distance: f64, cosine: f64) -> bool {
+    distance > 0.0 && cosine < NEAR_NORMAL
+}
 
 /// Returns true if all normals of faces at borders lead to one side.
 pub(super) fn lead_one_way(mut normals: impl Iterator<Item = DVec3> + Clone) -> bool {

@@ -13,6 +13,7 @@ use parry3d::math::Real;
 use parry3d::query::Ray;
 use sbbk_core::contact::{Feature, FeaturePair, ManifoldPoints, TriangleContact, contact};
 
+use super::borders::is_past_border;
 use super::islands::OverlapIslands;
 use super::query::ContactList;
 use super::surface::{SurfaceFilter, Verdict};
@@ -39,8 +40,8 @@ const MUCH_LARGER: Real = 16.0;
 const ONE_DIRECTION: f64 = 0.99;
 
 impl TriangleShapes<'_> {
-    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way`: contacts at borders get
-    /// the normals of the faces. `clipped` is memory.
+    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way`: contacts that lead
+    /// past borders do not count. `clipped` is memory.
     pub(super) fn add_far(
         &self,
         is_apart: bool,
@@ -56,9 +57,10 @@ impl TriangleShapes<'_> {
                 return;
             }
             let verdict = self.with_filter(pair, |filter| filter.apply(contact, may_pass, clipped));
-            if let Some(Verdict::Contact(mut hit, upright)) = verdict {
-                hit.contact = upright.filter(|_| lead_one_way).unwrap_or(hit.contact);
-                contacts.push((pair, hit));
+            if let Some(Verdict::Contact(hit, upright)) = verdict {
+                let cosine = upright.map_or(1.0, |normal| normal.dot(hit.contact.normal));
+                let is_past = lead_one_way && is_past_border(hit.contact.distance, cosine);
+                contacts.extend((!is_past).then_some((pair, hit)));
             }
         });
         if contacts.len() > old_count {

@@ -57,8 +57,8 @@ pub(super) enum Verdict {
     None,
     /// Edges or vertices that may pass each other. They have a contact only if nothing is nearer.
     Passing,
-    /// A contact and, at a [border](super::borders), the one along the normal of the face.
-    Contact(TriangleSurfaceContact, Option<TriangleContact>),
+    /// A contact and, at a [border](super::borders), the normal of the face.
+    Contact(TriangleSurfaceContact, Option<DVec3>),
     /// The surfaces cross. A contact may still be rejected by the second pass.
     Crossing(Crossing, Option<TriangleSurfaceContact>),
 }
@@ -130,7 +130,7 @@ impl<'a> SurfaceFilter<'a> {
             }
             let is_first_minimum = self.is_minimum(0, &contact);
             if is_first_minimum && self.is_minimum(1, &contact) {
-                let upright = (0..2).find_map(|i| self.upright_at_border(i, &contact));
+                let upright = (0..2).find_map(|i| self.normal_at_border(i, &contact));
                 return Verdict::Contact(of_triangles, upright);
             }
             if !self.have_passed(is_first_minimum, &contact) {
@@ -329,37 +329,27 @@ impl<'a> SurfaceFilter<'a> {
             && self.local.corners.iter().any(|corners| leans(corners, normal))
     }
 
-    /// Returns a contact at a border with the normal of the face, if the other shape is all on one side
-    /// of the face.
-    fn upright_at_border(&self, i: usize, contact: &TriangleContact) -> Option<TriangleContact> {
-        let TriangleContact { normal, point1, point2, .. } = *contact;
+    /// Returns the normal of a face at whose border a contact is, as a contact of the face would have it. The other shape must be all
+    /// on one side of the face.
+    fn normal_at_border(&self, i: usize, contact: &TriangleContact) -> Option<DVec3> {
         let feature = feature(contact, i);
         if feature == Feature::Face {
             return None;
         }
         let (up, height) = self.middle_over(i);
-        let own = [normal, -normal][i];
         let up = if height < 0.0 { -up } else { up };
-        let cosine = up.dot(own);
+        let is_upright = up.dot([contact.normal, -contact.normal][i]) > UPRIGHT;
         let place = self.place(i, contact);
-        let is_flat = up == DVec3::ZERO;
-        if is_flat || cosine > UPRIGHT || !self.surfaces[i].is_border(self.pair[i], feature, place)
+        if up == DVec3::ZERO
+            || is_upright
+            || !self.surfaces[i].is_border(self.pair[i], feature, place)
         {
             return None;
         }
         let lowest = self.shapes[1 - i].lowest(self.in_frame(1 - i, up).as_vec3())?;
         let lowest =
             f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO) - self.local.corners[i][0]);
-        if lowest < -LIP * self.shapes.filter_unit() {
-            return None;
-        }
-        let distance = contact.distance * cosine.max(0.0);
-        let normal = [up, -up][i];
-        let (point1, point2) = match i {
-            0 => (point1, point1 + distance * normal),
-            _ => (point2 - distance * normal, point2),
-        };
-        Some(TriangleContact { normal, distance, point1, point2, ..*contact })
+        (lowest >= -LIP * self.shapes.filter_unit()).then_some([up, -up][i])
     }
 
     /// Returns start and direction of the ray between both points of a contact, in the frame of a shape. The ray begins a

@@ -14,7 +14,7 @@ use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::longest_side;
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
-use super::borders::lead_one_way;
+use super::borders::{is_past_border, lead_one_way};
 use super::chunks::{ChunkResult, in_chunks};
 use super::deep::{self, ContourMemory};
 use super::descents::DescentMemory;
@@ -71,8 +71,8 @@ pub(crate) struct TriangleScratch {
 #[derive(Default)]
 struct FirstPass {
     contacts: ContactList<TriangleSurfaceContact>,
-    /// Contacts at borders, along the normals of the faces.
-    upright: ContactList<TriangleContact>,
+    /// Normals of the faces, for contacts at borders.
+    upright: ContactList<DVec3>,
     /// Edges and vertices that may pass each other.
     passing: ContactList<TriangleContact>,
     islands: OverlapIslands,
@@ -387,21 +387,26 @@ impl TriangleQuery<'_> {
     }
 }
 
-/// Replaces contacts at borders by those along the normals of the faces, if these lead one way, and returns true
-/// then. Both lists have one order.
+/// Gives contacts at borders the normals of the faces, if these lead one way, and returns true then. Removes those that lead
+/// [past a border](is_past_border). Both lists have one order.
 fn meet_borders(
-    upright: &ContactList<TriangleContact>,
+    upright: &ContactList<DVec3>,
     contacts: &mut ContactList<TriangleSurfaceContact>,
 ) -> bool {
-    if !lead_one_way(upright.iter().map(|(_, contact)| contact.normal)) {
+    if !lead_one_way(upright.iter().map(|(_, normal)| *normal)) {
         return false;
     }
     let mut next = upright.iter().peekable();
-    for (pair, hit) in contacts {
-        if let Some((_, upright)) = next.next_if(|(of, _)| of == pair) {
-            hit.contact = *upright;
-        }
-    }
+    contacts.retain_mut(|(pair, TriangleSurfaceContact { contact, .. })| {
+        let Some((_, normal)) = next.next_if(|(of, _)| of == pair) else { return true };
+        let cosine = normal.dot(contact.normal);
+        let distance = contact.distance * cosine.max(0.0);
+        let (middle, half) = (contact.point1.midpoint(contact.point2), 0.5 * distance * normal);
+        let (point1, point2) = (middle - half, middle + half);
+        let is_past = is_past_border(contact.distance, cosine);
+        *contact = TriangleContact { normal: *normal, distance, point1, point2, ..*contact };
+        !is_past
+    });
     true
 }
 

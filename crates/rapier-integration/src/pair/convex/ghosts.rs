@@ -63,6 +63,8 @@ pub(crate) struct GhostContacts {
     pub(super) borders: Vec<u32>,
     /// Contacts at borders, along the normals of the faces. Also has these normals in axes that all parts share.
     pub(super) upright: Vec<(u32, ConvexContact, DVec3)>,
+    /// Contacts that lead past borders, and do not count. In their order.
+    pub(super) dropped: Vec<u32>,
     /// Contacts that share a corner with the one at hand.
     pub(super) nearby: Vec<u32>,
     /// Contacts in the [strays](Strays) of corners, then of the last contact at an edge.

@@ -80,6 +80,11 @@ impl ConvexQuery<'_> {
                 contacts[contact].1 = contacts[contact].1.with_normal_of(&source);
             }
         }
+        let (mut index, mut dropped) = (0, ghosts.dropped.iter().peekable());
+        contacts.retain(|_| {
+            index += 1;
+            dropped.next_if(|&&dropped| dropped == index - 1).is_none()
+        });
         scratch.ghosts = ghosts;
     }
 
@@ -114,15 +119,16 @@ impl ConvexQuery<'_> {
         ghosts.find(contacts, keys, extends_beyond, find_strays, find_wall);
     }
 
-    /// Gives contacts at [borders](crate::pair::borders) the normals of their faces.
+    /// Gives contacts at [borders](crate::pair::borders) the normals of their faces. Those that lead past a border do not count.
     fn turn_at_borders(
         &self,
         ghosts: &mut GhostContacts,
         contacts: &mut ContactList<PartContact>,
         scratch: &mut ConvexScratch,
     ) {
-        let GhostContacts { borders, sources, upright, .. } = ghosts;
+        let GhostContacts { borders, sources, upright, dropped, .. } = ghosts;
         upright.clear();
+        dropped.clear();
         upright.extend(borders.iter().filter(|&&i| sources[i as usize] == i).filter_map(
             |&border| {
                 let (of, hit) = &contacts[border as usize];
@@ -137,7 +143,11 @@ impl ConvexQuery<'_> {
         ));
         if lead_one_way(upright.iter().map(|(.., normal)| *normal)) {
             for &(border, contact, _) in &*upright {
-                let hit = &mut contacts[border as usize].1;
+                let (of, hit) = &mut contacts[border as usize];
+                let is_past = self.with_pair(*of, scratch, |pair| {
+                    pair.is_past_border(&hit.contact, contact.normal)
+                });
+                dropped.extend((is_past == Some(true)).then_some(border));
                 *hit = PartContact { contact, source: NormalSource::Border, ..*hit };
             }
         }

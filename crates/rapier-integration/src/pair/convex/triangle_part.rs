@@ -16,6 +16,7 @@ use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, is_over, ray_length};
 use super::shape::ConvexShape;
+use crate::pair::borders::is_past_border;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::{ContactSummary, PatchPlan};
 
@@ -289,7 +290,7 @@ impl TrianglePartPair<'_> {
     pub(super) fn upright_at_border(&self, contact: &ConvexContact) -> Option<ConvexContact> {
         let ConvexContact { distance, normal: own, on_shape, .. } = *contact;
         let face = self.face_contact(&self.placed.in_part(self.corners))?;
-        let radius = f64::from(self.part.shape.radius());
+        let radius = self.radius();
         if radius - face.distance > BORDER_DEPTH * f64::from(self.pair.pose.prediction) {
             return None;
         }
@@ -299,6 +300,16 @@ impl TrianglePartPair<'_> {
         // Under the part: a part that rolls would seem to come down on a point ahead.
         let on_triangle = on_shape - distance * normal;
         Some(ConvexContact { distance, normal, on_triangle, on_shape })
+    }
+
+    /// Returns true if the way along the normal of a face leads past its border, where a contact is.
+    pub(super) fn is_past_border(&self, contact: &ConvexContact, face: DVec3) -> bool {
+        is_past_border(contact.distance - self.radius(), contact.normal.dot(face))
+    }
+
+    /// Returns the rounding radius of the part.
+    fn radius(&self) -> f64 {
+        f64::from(self.part.shape.radius())
     }
 
     /// Returns the contact of a wall with its own normal, if the part stands at its foot. `floor` is the contact of the
