@@ -468,7 +468,7 @@ impl OverlapIslands {
     }
 
     /// Rejects contacts that push a solid to the wrong side of a sheet, in islands whose contacts
-    /// push to both sides or are too few. The right side is that of the middle of the solid.
+    /// push to both sides or are too few. The middle of the solid is on the right side.
     /// Returns true if there were any.
     fn reject_sides_of_sheets(&mut self) -> bool {
         let mut found = false;

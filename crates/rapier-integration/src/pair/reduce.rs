@@ -251,7 +251,7 @@ pub(super) struct Outermost {
 }
 
 impl Outermost {
-    /// Chooses the outermost of `points`, which have distances. The first of these must be deepest. The body reaches the
+    /// Chooses the outermost of `points`, which have distances. Point 0 must be the deepest. The body reaches the
     /// others after the least turn. They are far outside the convex hull, seen along its `normal`, and hardly above the deepest one,
     /// compared with its depth. More than four are chosen if others as deep are far from these.
     pub(super) fn choose(
@@ -299,7 +299,7 @@ impl Outermost {
         &self.chosen
     }
 
-    /// Chooses the first point: an outermost one of those that are as deep as the deepest, up to rounding, and have its normal.
+    /// Chooses the first point: an outermost one with the normal of the deepest point and, up to rounding, its depth.
     fn begin(&mut self, plan: PatchPlan, points: &[(Vec3, Real)], normal: impl Fn(usize) -> Vec3) {
         let (x, y) = normal(0).any_orthonormal_pair();
         let flat = |&(point, _): &(Vec3, Real)| Vec2::new(x.dot(point), y.dot(point));

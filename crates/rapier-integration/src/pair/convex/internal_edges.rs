@@ -119,7 +119,7 @@ impl ConvexQuery<'_> {
         ghosts.find(contacts, keys, extends_beyond, find_strays, find_wall);
     }
 
-    /// Gives contacts at [borders](crate::pair::borders) the normals of their faces. Those that lead past a border do not count.
+    /// Gives contacts at [borders](crate::pair::borders) the normals of their faces. Contacts that lead past a border do not count.
     fn turn_at_borders(
         &self,
         ghosts: &mut GhostContacts,
