@@ -280,7 +280,6 @@ impl<F: Facets> Around<F> {
     ) -> (Slopes, usize) {
         let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
         let (mut count, mut area) = (0, DVec3::ZERO);
-        let outward = |triangle| self.outward_of(triangle);
         let is_closed = self.visit(triangle, feature, |wedge| {
             wedge.edges.into_iter().for_each(|edge| slopes.add(edge, direction));
             heights.add(wedge.area(), wedge.angle(feature), direction);
@@ -297,11 +296,11 @@ impl<F: Facets> Around<F> {
             slopes.bend = Some(bend.doubled());
         }
         // Triangles of a one-ring have one winding.
-        let mut height = outward(triangle) * heights.sum();
+        let mut height = self.outward_of(triangle) * heights.sum();
         if !self.facets.is_whole(triangle, feature) {
             let mut all = Heights::default();
             self.visit_touching(triangle, place, usize::MAX, |other, corners, ends| {
-                let outward = outward(other);
+                let outward = self.outward_of(other);
                 // Walls within are no surface.
                 if outward == 0.0 {
                     return;

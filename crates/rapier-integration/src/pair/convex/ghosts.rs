@@ -61,10 +61,8 @@ pub(crate) struct GhostContacts {
     pub(super) on_faces: Vec<u32>,
     /// Contacts at borders of the mesh that keep their normals.
     pub(super) borders: Vec<u32>,
-    /// Contacts at borders, along the normals of the faces. Also has these normals in axes that all parts share.
-    pub(super) upright: Vec<(u32, ConvexContact, DVec3)>,
-    /// Contacts that lead past borders, and do not count. In their order.
-    pub(super) dropped: Vec<u32>,
+    /// Contacts at borders that take the normals of the faces, in their order.
+    pub(super) upright: Vec<UprightContact>,
     /// Contacts that share a corner with the one at hand.
     pub(super) nearby: Vec<u32>,
     /// Contacts in the [strays](Strays) of corners, then of the last contact at an edge.
@@ -73,6 +71,17 @@ pub(crate) struct GhostContacts {
     kept_strays: u32,
     /// Contacts of walls at whose foot the shape stands, along the normals of the walls.
     pub(super) walls: Vec<(u32, ConvexContact)>,
+}
+
+/// A contact at a border, along the normal of the face.
+pub(super) struct UprightContact {
+    /// Index among the contacts.
+    pub(super) index: u32,
+    pub(super) contact: ConvexContact,
+    /// The normal in axes that all parts share.
+    pub(super) shared_normal: DVec3,
+    /// True if the contact leads [past the border](crate::pair::borders::is_past_border), and does not count.
+    pub(super) is_past: bool,
 }
 
 struct Corner {

@@ -10,7 +10,7 @@ use sbbk_core::surface::strays::{self, touches};
 use sbbk_core::surface::{Around, Side, SurfaceKind};
 
 use super::contact::{NormalSource, PartContact};
-use super::ghosts::{GhostContacts, corner_key};
+use super::ghosts::{GhostContacts, UprightContact, corner_key};
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::box_between;
 use crate::pair::borders::lead_one_way;
@@ -80,11 +80,9 @@ impl ConvexQuery<'_> {
                 contacts[contact].1 = contacts[contact].1.with_normal_of(&source);
             }
         }
-        let (mut index, mut dropped) = (0, ghosts.dropped.iter().peekable());
-        contacts.retain(|_| {
-            index += 1;
-            dropped.next_if(|&&dropped| dropped == index - 1).is_none()
-        });
+        let past = ghosts.upright.iter().filter(|upright| upright.is_past);
+        let (mut indices, mut past) = (0.., past.map(|upright| upright.index).peekable());
+        contacts.retain(|_| past.next_if_eq(&indices.next().unwrap_or_default()).is_none());
         scratch.ghosts = ghosts;
     }
 
@@ -126,30 +124,27 @@ impl ConvexQuery<'_> {
         contacts: &mut ContactList<PartContact>,
         scratch: &mut ConvexScratch,
     ) {
-        let GhostContacts { borders, sources, upright, dropped, .. } = ghosts;
+        let GhostContacts { borders, sources, upright, .. } = ghosts;
         upright.clear();
-        dropped.clear();
-        upright.extend(borders.iter().filter(|&&i| sources[i as usize] == i).filter_map(
-            |&border| {
-                let (of, hit) = &contacts[border as usize];
-                if !self.is_border(*of, hit, scratch) {
-                    return None;
-                }
-                let upright =
-                    self.with_pair(*of, scratch, |pair| pair.upright_at_border(&hit.contact));
-                let upright = upright.flatten()?;
-                Some((border, upright, self.shared_normal(*of, &upright, scratch)))
-            },
-        ));
-        if lead_one_way(upright.iter().map(|(.., normal)| *normal)) {
-            for &(border, contact, _) in &*upright {
-                let (of, hit) = &mut contacts[border as usize];
-                let is_past = self.with_pair(*of, scratch, |pair| {
-                    pair.is_past_border(&hit.contact, contact.normal)
-                });
-                dropped.extend((is_past == Some(true)).then_some(border));
-                *hit = PartContact { contact, source: NormalSource::Border, ..*hit };
+        for &index in borders.iter().filter(|&&i| sources[i as usize] == i) {
+            let (of, hit) = &contacts[index as usize];
+            let of_face = self.with_pair(*of, scratch, |pair| {
+                let contact = pair.upright_at_border(&hit.contact)?;
+                Some((contact, pair.is_past_border(&hit.contact, contact.normal)))
+            });
+            if let Some((contact, is_past)) = of_face.flatten()
+                && self.is_border(*of, hit, scratch)
+            {
+                let shared_normal = self.shared_normal(*of, &contact, scratch);
+                upright.push(UprightContact { index, contact, shared_normal, is_past });
             }
+        }
+        if !lead_one_way(upright.iter().map(|upright| upright.shared_normal)) {
+            upright.clear();
+        }
+        for &UprightContact { index, contact, .. } in &*upright {
+            let hit = &mut contacts[index as usize].1;
+            *hit = PartContact { contact, source: NormalSource::Border, ..*hit };
         }
     }
 

@@ -50,6 +50,7 @@ fn islands_without_a_reliable_contact_need_support() {
         let pairs = [[1, 1], [1, 2], [3, 2], [7, 7], [7, 8]];
         let open = pairs.map(|pair| is_open(&islands, pair));
         assert_eq!(open, [false, false, false, true, true]);
+        assert!(islands.crossing([9, 9]).is_none(), "it does not cross");
         let settled = [[3, 2], [9, 9], [1, 1], [7, 8]].map(|pair| islands.is_final(pair));
         assert_eq!(settled, [true, true, false, false]);
     }
