@@ -224,11 +224,16 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         (rays.is_exact.get() || one == sign(1)).then_some(one)
     }
 
-    /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
+    /// Sends a ray to the front of a triangle and another to the back, and tells the side between them. A ray from a face to the
+    /// back may leave through a triangle that is wound the other way.
     fn sample(&self, triangle: u32, i: u32) -> Side {
         let start = middle(&self.triangles.corners(triangle));
-        let rays = Rays::new(self, triangle, start, i, STEEP);
-        rays.map_or(Side::Sheet, |rays| rays.side_without_walls())
+        let Some(rays) = Rays::new(self, triangle, start, i, STEEP) else { return Side::Sheet };
+        let leaves_turned = || rays.winding(1, |_| true).is_some_and(|back| back < 0);
+        match rays.side_without_walls() {
+            Side::Sheet if leaves_turned() => Side::Outer,
+            side => side,
+        }
     }
 
     /// Like [`sample`](Self::sample), with rays of any slope. A place within the body is no hole, so the rays need not leave

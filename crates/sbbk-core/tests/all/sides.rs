@@ -158,8 +158,8 @@ fn triangles_wound_the_other_way_are_turned() {
                 walls += u32::from(found == Side::Inner);
             }
             println!("{wrong} of {} wrong, {walls} walls; each {nth}th turned", soup.count());
-            // Rays that meet a turned triangle count wrong.
-            assert!(walls == 0 && 20 * wrong <= soup.count(), "{wrong}, {walls} walls");
+            // Rays that pass many turned triangles count wrong.
+            assert!(walls == 0 && 200 * wrong <= soup.count(), "{wrong}, {walls} walls");
         }
     }
 }
