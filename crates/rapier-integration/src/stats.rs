@@ -3,8 +3,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use sbbk_core::traverse::DescentCounts;
 
-use crate::pair::QueryOutcome;
-
 /// Counts of a dispatcher and its clones.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -71,6 +69,18 @@ impl Counter {
     fn get(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
+}
+
+/// Way in which a query was answered.
+pub(crate) enum QueryOutcome {
+    /// By the distance of the shapes: Parry's hierarchy and a box or a ball, or the motion since.
+    Apart,
+    /// By the manifolds of the last query.
+    Unchanged,
+    /// From the candidates of an earlier descent.
+    Reused,
+    /// By a descent.
+    Descended,
 }
 
 /// Counts of a dispatcher, see [`SbbkStats`].

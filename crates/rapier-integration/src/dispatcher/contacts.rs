@@ -13,9 +13,9 @@ use super::SbbkDispatcher;
 use crate::TriangleContacts;
 use crate::mesh::{MeshView, TwoMeshes, is_near};
 use crate::pair::{
-    ConvexPair, Field, MeshPair, MeshPlace, PairPose, Parts, QueryOutcome, ShapeView,
-    update_manifolds,
+    ConvexPair, Field, MeshPair, MeshPlace, PairPose, Parts, ShapeView, update_manifolds,
 };
+use crate::stats::QueryOutcome;
 
 /// Two shapes by the kind of pair that they are.
 enum Kind<'a> {

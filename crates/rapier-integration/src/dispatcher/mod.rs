@@ -200,20 +200,18 @@ impl fmt::Debug for PreparedTree {
 
 /// Says why a mesh cannot be prepared.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PrepareError {
-    cause: BuildError,
-}
+pub struct PrepareError(BuildError);
 
 impl From<BuildError> for PrepareError {
     fn from(cause: BuildError) -> Self {
-        Self { cause }
+        Self(cause)
     }
 }
 
 impl fmt::Display for PrepareError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "cannot prepare this mesh: {}. ", self.cause)?;
-        f.write_str(match self.cause {
+        write!(f, "cannot prepare this mesh: {}. ", self.0)?;
+        f.write_str(match self.0 {
             BuildError::NotFinite { .. } => {
                 "Remove or repair the triangles of that vertex. Until then their contacts are lost"
             }
@@ -227,7 +225,7 @@ impl fmt::Display for PrepareError {
 
 impl Error for PrepareError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
-        Some(&self.cause)
+        Some(&self.0)
     }
 }
 

@@ -21,7 +21,7 @@ impl SbbkDispatcher {
         &self,
         pos12: &Pose,
         [g1, g2]: [&dyn Shape; 2],
-        balls: Balls,
+        takes_balls: bool,
         apart: Option<(Real, T)>,
         then: impl FnOnce(Query<'_>) -> T,
     ) -> Option<T> {
@@ -46,7 +46,7 @@ impl SbbkDispatcher {
             [None, Some(mesh)] => (mesh, g1, MeshPlace::Second),
             [None, None] => return None,
         };
-        let is_parrys = balls == Balls::Parrys && other.as_ball().is_some();
+        let is_parrys = !takes_balls && other.as_ball().is_some();
         if !self.config.kinds.convex_shapes || is_parrys || !other.is_convex() {
             return None;
         }
@@ -62,15 +62,6 @@ impl SbbkDispatcher {
     }
 }
 
-/// Who answers queries without manifolds about a ball.
-#[derive(PartialEq)]
-enum Balls {
-    /// SBBK, as for other convex shapes.
-    Ours,
-    /// Parry: exactly, in less time, and inside a mesh with pseudo-normals a ball meets it.
-    Parrys,
-}
-
 /// Queries of two rigid meshes, and of a rigid mesh and a convex shape. All others go to Parry.
 impl QueryDispatcher for SbbkDispatcher {
     fn intersection_test(
@@ -80,8 +71,7 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
         let apart = Some((0.0, ShapeIntersection::new(false)));
-        let found =
-            self.search(pos12, [g1, g2], Balls::Parrys, apart, |query| query.intersection());
+        let found = self.search(pos12, [g1, g2], false, apart, |query| query.intersection());
         found.map_or_else(|| DefaultQueryDispatcher.intersection_test(pos12, g1, g2), Ok)
     }
 
@@ -91,7 +81,7 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        let found = self.search(pos12, [g1, g2], Balls::Parrys, None, |query| query.distance());
+        let found = self.search(pos12, [g1, g2], false, None, |query| query.distance());
         found.map_or_else(|| DefaultQueryDispatcher.distance(pos12, g1, g2), Ok)
     }
 
@@ -104,7 +94,7 @@ impl QueryDispatcher for SbbkDispatcher {
     ) -> Result<Option<Contact>, Unsupported> {
         let (shapes, apart) = ([g1, g2], Some((prediction, None)));
         let ask = |query: Query<'_>| query.contact(prediction);
-        let found = self.search(pos12, shapes, Balls::Parrys, apart, ask);
+        let found = self.search(pos12, shapes, false, apart, ask);
         found.map_or_else(|| DefaultQueryDispatcher.contact(pos12, g1, g2, prediction), Ok)
     }
 
@@ -117,7 +107,7 @@ impl QueryDispatcher for SbbkDispatcher {
     ) -> Result<ClosestPoints, Unsupported> {
         let (shapes, apart) = ([g1, g2], Some((max_dist, ClosestPoints::Disjoint)));
         let ask = |query: Query<'_>| query.closest_points(max_dist);
-        let found = self.search(pos12, shapes, Balls::Parrys, apart, ask);
+        let found = self.search(pos12, shapes, false, apart, ask);
         found.map_or_else(|| DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist), Ok)
     }
 
@@ -129,8 +119,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let found = self
-            .search(pos12, [g1, g2], Balls::Ours, None, |query| query.cast(local_vel12, options));
+        let found =
+            self.search(pos12, [g1, g2], true, None, |query| query.cast(local_vel12, options));
         found.map_or_else(
             || DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
             Ok,
@@ -151,9 +141,8 @@ impl QueryDispatcher for SbbkDispatcher {
         let cast =
             &NonlinearCast { motions, start: start_time, end: end_time, stop_at_penetration };
         let [pos1, pos2] = motions.map(|motion| motion.position_at_time(start_time));
-        let found = self.search(&pos1.inv_mul(&pos2), [g1, g2], Balls::Ours, None, |query| {
-            query.cast_nonlinear(cast)
-        });
+        let found = self
+            .search(&pos1.inv_mul(&pos2), [g1, g2], true, None, |query| query.cast_nonlinear(cast));
         found.map_or_else(
             || {
                 DefaultQueryDispatcher.cast_shapes_nonlinear(

@@ -10,15 +10,14 @@ use super::flags::TriangleFlags;
 use super::neighbours::MeshRays;
 
 /// Tree and surface of a mesh, for all colliders with equal geometry. A thread computes a part when the
-/// thread needs that part. Two threads may compute one tree or surface at once, and neither waits. Kind,
-/// flags and tips are computed once, and other threads wait for these.
+/// thread needs that part. Two threads may compute one tree or surface at once, and neither waits. Kind
+/// and tips are computed once, and other threads wait for these.
 #[derive(Default)]
 pub(crate) struct MeshData {
-    surface: OnceLock<Surface>,
+    /// Surface of an analysed mesh, and flags of its triangles.
+    analysed: OnceLock<(Surface, Box<[TriangleFlags]>)>,
     /// Kind of a mesh that is too large to analyse as a whole.
     kind: OnceLock<SurfaceKind>,
-    /// Flags of each triangle of the surface.
-    flags: OnceLock<Box<[TriangleFlags]>>,
     tree: OnceLock<Tree>,
     has_build_begun: AtomicBool,
     declared_kind: AtomicU8,
@@ -62,28 +61,27 @@ impl MeshData {
     }
 
     pub(super) fn surface(&self) -> Option<&Surface> {
-        self.surface.get()
+        Some(&self.analysed.get()?.0)
     }
 
     /// The flags of the triangles of an analysed mesh.
     #[inline]
     pub(super) fn flags(&self) -> &[TriangleFlags] {
-        self.flags.get().map_or(&[], |flags| flags)
+        self.analysed.get().map_or(&[], |(_, flags)| flags)
     }
 
     /// Computes the surface of `mesh`, whose data this must be.
     pub(super) fn analyse(&self, mesh: &TriMesh) -> &Surface {
         let surface = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(mesh));
-        self.flags
-            .get_or_init(|| mesh.indices().iter().map(|_| TriangleFlags::default()).collect());
+        let flags = mesh.indices().iter().map(|_| TriangleFlags::default()).collect();
         // Another thread may have set the same surface meanwhile.
-        let _ = self.surface.set(surface);
-        self.surface.get().expect("set just now")
+        let _ = self.analysed.set((surface, flags));
+        self.surface().expect("set just now")
     }
 
     /// The kind that a user declared, else the computed one, if it has been computed.
     pub(crate) fn kind(&self) -> Option<SurfaceKind> {
-        let computed = || self.surface.get().map(Surface::kind).or(self.kind.get().copied());
+        let computed = || self.surface().map(Surface::kind).or(self.kind.get().copied());
         self.declared_kind().or_else(computed)
     }
 

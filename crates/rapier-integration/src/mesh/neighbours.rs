@@ -43,7 +43,7 @@ impl<'a> Twins<'a> {
     }
 }
 
-/// Distance to other parts, in radii of a part, that leaves it alone. Higher: parts near each other take
+/// Least distance of a part that is alone from all others, in radii of the part. Higher: parts near each other take
 /// more rays. Lower: walls between parts have contacts, though rays pass these.
 const ALONE: Real = 2.0e-4;
 

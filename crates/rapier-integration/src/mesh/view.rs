@@ -6,13 +6,12 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
-use glamx::{DVec3, Vec3};
+use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::{PointQuery, Ray, RayCast};
-use parry3d::shape::{CompositeShape, CompositeShapeRef, FeatureId, Shape, TriMesh};
-use sbbk_core::surface;
+use parry3d::shape::{CompositeShape, FeatureId, Shape, TriMesh};
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
@@ -55,8 +54,7 @@ impl<'a> TwoMeshes<'a> {
         *is_valid && !has_near(larger, &root.transform_by(pose), pose, margin)
     }
 
-    /// True if the box around the smaller mesh is covered by the larger one, as [points](is_covered) are. So it is for each
-    /// mesh inside a closed one.
+    /// True if the larger mesh [covers](is_covered) the box around the smaller one. A closed mesh covers all that is in it.
     pub(crate) fn may_be_inside(&self) -> bool {
         is_box_covered(self.larger, &self.root.transform_by(&self.pose))
     }
@@ -116,19 +114,6 @@ pub(super) fn nearest(
     Some((triangle, nearest, behind))
 }
 
-/// Returns the nearest triangle of a mesh to a point, if that is within a distance.
-pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Option<u32> {
-    Some(CompositeShapeRef(mesh).project_local_point(point, within, false)?.0)
-}
-
-/// Parry's feature of a ray that meets the back of a triangle.
-const BACK: FeatureId = FeatureId::Face(1);
-
-/// Returns true if a ray that meets a feature leaves the solid there. `outward` is the sign with which normals lead out.
-fn leaves(met: FeatureId, outward: f64) -> bool {
-    (met == BACK) == (outward > 0.0)
-}
-
 /// Greatest number of parts of a mesh that [`exit`] leaves one after another.
 const MOST_PARTS: usize = 8;
 
@@ -139,8 +124,9 @@ pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, outward: Option<f64>) -> Opt
     let next = |from: Real| {
         let rest = Ray::new(ray.origin + from * ray.dir, ray.dir);
         let hit = shape.cast_local_ray_and_get_normal(&rest, Real::MAX, false)?;
-        // Parry turns normals against the ray.
-        let leaves = outward.is_none_or(|outward| leaves(hit.feature, outward));
+        // Parry calls the back face 1, and turns normals against the ray.
+        let is_back = hit.feature == FeatureId::Face(1);
+        let leaves = outward.is_none_or(|outward| is_back == (outward > 0.0));
         leaves.then_some((from + hit.time_of_impact, -hit.normal))
     };
     let size = ray.origin.abs().max_element();
@@ -151,24 +137,6 @@ pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, outward: Option<f64>) -> Opt
     }
     let exits = std::iter::successors(Some(first), |(length, _)| next(beyond(*length)));
     exits.take(MOST_PARTS).last()
-}
-
-/// Returns true if a solid ends within a length along a ray that starts in it, see [`ends_within`](sbbk_core::surface::ends_within).
-pub(crate) fn ends_within(
-    mesh: &TriMesh,
-    [start, direction]: [DVec3; 2],
-    length: f64,
-    outward: f64,
-) -> bool {
-    let ends = [start, start + length * direction].map(|end| end.as_vec3());
-    // The box has all points of the ray, as rounding to f32 is monotonic up to one step.
-    let segment = Aabb::from_points(ends)
-        .loosened(Real::EPSILON * ends[0].abs().max(ends[1].abs()).max_element());
-    let segment = BvhNode::leaf(segment, 0);
-    let near = mesh.bvh().leaves(|node| node.intersects(&segment));
-    let corners =
-        |triangle| mesh.triangle(triangle).vertices().map(|corner| corner.as_dvec3() - start);
-    surface::ends_within(near.map(corners), direction, length, outward)
 }
 
 /// True if a box is finite and not empty.
@@ -210,20 +178,10 @@ impl MeshStore {
 }
 
 impl<'a> MeshView<'a> {
-    /// Returns the shared data of the mesh, if the mesh is registered.
-    pub(crate) fn registered(&self) -> Option<Arc<MeshData>> {
-        self.store.registered(self.mesh)
-    }
-
     /// Returns the shared data of the mesh with its tree, if the mesh is registered or small. Finds
     /// small ones by a hash of their content, and builds their trees within the budget.
     pub(crate) fn with_tree(&self) -> Option<Arc<MeshData>> {
-        self.registered().or_else(|| self.store.small_with_tree(self.mesh))
-    }
-
-    /// Notes a search without trees.
-    pub(crate) fn earn_tree(&self) {
-        self.store.earn_tree();
+        self.store.registered(self.mesh).or_else(|| self.store.small_with_tree(self.mesh))
     }
 
     /// True if the mesh cannot change while its token stays.
@@ -311,7 +269,7 @@ impl<'a> MeshView<'a> {
         Sphere { centre, radius: half + gamma(8) * (centre.length() + half) }
     }
 
-    /// Returns the distance of a point, up to rounding; `None` if the box of a triangle is within `least`.
+    /// Returns the distance of a point to the mesh, up to rounding; `None` if the box of a triangle is within `least` of the point.
     pub(crate) fn distance_beyond(&self, point: Vec3, least: Real) -> Option<Real> {
         let is_within = |node: &BvhNode| node.aabb().distance_to_local_point(point, true) <= least;
         if self.mesh.bvh().leaves(is_within).next().is_some() {

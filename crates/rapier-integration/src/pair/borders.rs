@@ -9,7 +9,10 @@
 
 use glamx::DVec3;
 
-use super::triangle_shapes::NEAR_NORMAL;
+use sbbk_core::contact::TriangleContact;
+
+use super::query::ContactList;
+use super::shapes::{NEAR_NORMAL, TriangleSurfaceContact};
 
 /// Returns true if the way along the normal of a face leads past its border. `distance`: to the border. `cosine`: between the way to
 /// the border and the normal.
@@ -21,6 +24,29 @@ pub(super) fn is_past_border(distance: f64, cosine: f64) -> bool {
 pub(super) fn lead_one_way(mut normals: impl Iterator<Item = DVec3> + Clone) -> bool {
     let sum: DVec3 = normals.clone().sum();
     normals.all(|normal| normal.dot(sum) > 0.0)
+}
+
+/// Gives contacts at borders the normals of the faces, if these lead one way, and returns true then. Removes those that lead
+/// [past a border](is_past_border). Both lists have one order.
+pub(super) fn meet_borders(
+    upright: &ContactList<DVec3>,
+    contacts: &mut ContactList<TriangleSurfaceContact>,
+) -> bool {
+    if !lead_one_way(upright.iter().map(|(_, normal)| *normal)) {
+        return false;
+    }
+    let mut next = upright.iter().peekable();
+    contacts.retain_mut(|(pair, TriangleSurfaceContact { contact, .. })| {
+        let Some((_, normal)) = next.next_if(|(of, _)| of == pair) else { return true };
+        let cosine = normal.dot(contact.normal);
+        let distance = contact.distance * cosine.max(0.0);
+        let (middle, half) = (contact.point1.midpoint(contact.point2), 0.5 * distance * normal);
+        let (point1, point2) = (middle - half, middle + half);
+        let is_past = is_past_border(contact.distance, cosine);
+        *contact = TriangleContact { normal: *normal, distance, point1, point2, ..*contact };
+        !is_past
+    });
+    true
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use sbbk_core::query::TrianglePair;
 use super::islands::{IslandWay, OverlapIslands, SAME_SIDE, Unsupported};
 use super::pose::PairPose;
 use super::query::ContactList;
-use super::triangle_shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
+use super::shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 
 /// Least cosine between the area vector of a contour and a shorter way out. Higher: boxes leave boxes at a slant. Lower:
 /// contacts of several contours push against each other.

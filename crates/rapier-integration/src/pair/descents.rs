@@ -6,27 +6,54 @@
 //! A descent of BVHs first finds the triangles of the larger mesh near the box of the other. Many
 //! descents end here. Groups of such triangles descend the other BVH until something is near. Then each
 //! four of a group descend.
+//!
+//! Rapier hands out pairs in blocks of 64, so few heavy pairs would run on one thread. With the feature `parallel`, a
+//! heavy pair is split into chunks for the threads of the host's pool. Results are joined in the order of chunks, so they
+//! have the same bits on any number of threads.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
-use parry3d::math::Real;
+use parry3d::math::{Pose, Real};
+use parry3d::partitioning::BvhNode;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
 use sbbk_core::leaf::{LateralCulling, LeafTest};
-use sbbk_core::surface::Surface;
+use sbbk_core::surface::{Facets, Surface};
 use sbbk_core::traverse::{
     BoxTest, Counters, DescentCounts, DescentScratch, NearBox, NodePair, PairFrame, Placement,
     TestedBox, begin_descent, descend_from,
 };
 use sbbk_core::tree::{BATCH, LeafBatch, Tree};
 
-use super::chunks::{ChunkResult, has_threads, in_chunks};
 use super::field::Field;
-use super::state::Candidate;
-use super::triangle_shape::TriangleShape;
-use super::triangle_shapes::{Hint, TriangleShapes};
+use super::pose::PairPose;
+use super::query::Candidate;
+use super::shapes::{
+    DISTANT, FieldShape, Hint, MeshShape, NEAR_NORMAL, TriangleShape, TriangleShapes,
+};
 use crate::mesh::MeshView;
+
+/// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body of one length unit has a
+/// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
+/// lower: bodies come deeper into others before they meet.
+const REACH: f64 = 0.4;
+
+/// Least reach of fine meshes in filter distances: 0.01 radii. Higher: fine meshes cost more; lower: bodies turn and sink where
+/// they are pressed together.
+const LEAST_REACH: f64 = 0.1;
+
+/// Reach of fine meshes in sizes of their triangles. Higher: each triangle is near more others. Lower: meshes of a few thousand triangles
+/// have contacts late.
+const REACH_PER_TRIANGLE: f64 = 0.25;
+
+/// Greatest reach by the size of triangles that replaces the other reach, as a share of the other one. Higher: far contacts take more time than the smaller reach saves.
+/// Lower: fine meshes cost more.
+const MUCH_LESS: f64 = 0.75;
+
+/// Greatest product of the numbers of triangles near the other shape with which all pairs are candidates.
+/// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
+const MOST_PAIRS: usize = 1 << 14;
 
 /// Pairs of nodes or a few more at which the chunks of a descent start. Higher: fewer descents are split; lower: one
 /// chunk may have all that is near.
@@ -64,6 +91,68 @@ impl ChunkResult for DescentChunk {
 }
 
 impl TriangleShapes<'_> {
+    /// Returns the distance up to which all pairs of triangles are candidates. Farther contacts are
+    /// [far](super::far).
+    pub(super) fn reach(&self) -> Real {
+        *self.reach.get_or_init(|| {
+            let most = self.reach_of_fine() as Real;
+            // A prediction distance that is NaN finds nothing.
+            let is_less = most < self.pose.prediction && !self.are_few();
+            if is_less { most } else { self.pose.prediction }
+        })
+    }
+
+    /// Returns the greatest reach of fine meshes.
+    fn reach_of_fine(&self) -> f64 {
+        let [least, most] = [LEAST_REACH, REACH].map(|share| share * self.filter_distance);
+        let [size1, size2] = self.shapes.each_ref().map(TriangleShape::triangle_size);
+        let of_triangles = (REACH_PER_TRIANGLE * f64::from(size1.max(size2))).max(least);
+        let otherwise = most.min(f64::from(self.pose.prediction));
+        if of_triangles <= MUCH_LESS * otherwise { of_triangles } else { most }
+    }
+
+    /// Returns true if few pairs of triangles may be within the prediction distance.
+    fn are_few(&self) -> bool {
+        let PairPose { pos12, prediction, .. } = *self.pose;
+        let poses = [pos12, pos12.inverse()];
+        let are_few_of_field = |field: &FieldShape<'_>, mesh: &MeshShape<'_>, pose: &Pose| {
+            let under = field.field.count_under(&mesh.view.placed_root(pose, prediction));
+            mesh.view.mesh.indices().len() as f64 * under <= MOST_PAIRS as f64
+        };
+        match &self.shapes {
+            [TriangleShape::Mesh(one), TriangleShape::Mesh(two)] => {
+                are_few_of_meshes([one.view, two.view], poses, prediction)
+            }
+            [TriangleShape::Field(field), TriangleShape::Mesh(mesh)] => {
+                are_few_of_field(field, mesh, &poses[0])
+            }
+            [TriangleShape::Mesh(mesh), TriangleShape::Field(field)] => {
+                are_few_of_field(field, mesh, &poses[1])
+            }
+            [TriangleShape::Field(_), TriangleShape::Field(_)] => true,
+        }
+    }
+
+    /// Returns a test for triangles beside each other. Their contacts are no local minima while candidates within `margin`
+    /// serve, where the surface [bends little](Self::bends_little).
+    pub(super) fn lateral_culling(&self, margin: Real) -> Option<LateralCulling> {
+        let reach = self.reach();
+        let is_filtered = f64::from(reach) <= self.filter_distance;
+        (self.has_surface() && is_filtered).then(|| {
+            let (distance, travel) = ((DISTANT * self.filter_unit()) as Real, margin - reach);
+            LateralCulling::new(distance, NEAR_NORMAL as Real, reach, travel)
+        })
+    }
+
+    /// Returns true if contacts beside a triangle of shape `i`, by [lateral culling](Self::lateral_culling), are no local
+    /// minima. False for height fields.
+    pub(super) fn bends_little(&self, i: usize, triangle: u32) -> bool {
+        let TriangleShape::Mesh(MeshShape { surface: Some(surface), .. }) = &self[i] else {
+            return false;
+        };
+        surface.facets().cones(triangle).least_square(false) >= NEAR_NORMAL * NEAR_NORMAL
+    }
+
     /// Adds all pairs of triangles within `margin`, and few others.
     pub(super) fn descend(
         &self,
@@ -176,6 +265,21 @@ impl TriangleShapes<'_> {
             TriangleShape::Mesh(mesh) => mesh.surface.as_ref()?.with_doubles(),
             TriangleShape::Field(_) => None,
         })
+    }
+}
+
+/// Returns true if few pairs of triangles of two meshes may be within the prediction distance. `poses` has each mesh's partner
+/// in the frame of the mesh.
+fn are_few_of_meshes(meshes: [&MeshView<'_>; 2], poses: [Pose; 2], prediction: Real) -> bool {
+    let count = |i: usize, most: usize| {
+        let around = BvhNode::leaf(meshes[1 - i].placed_root(&poses[i], prediction), 0);
+        meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
+    };
+    let least = MOST_PAIRS.isqrt();
+    match [0, 1].map(|i| count(i, least)) {
+        [one, _] if one <= least => one * count(1, MOST_PAIRS / one.max(1)) <= MOST_PAIRS,
+        [_, two] if two <= least => two * count(0, MOST_PAIRS / two.max(1)) <= MOST_PAIRS,
+        _ => false,
     }
 }
 
@@ -320,4 +424,45 @@ impl<'a> BvhDescent<'a> {
         }
         if waiting.is_empty() { ControlFlow::Continue(()) } else { decide(&waiting) }
     }
+}
+
+/// The result of a chunk.
+pub(super) trait ChunkResult: Default + Send {
+    /// Adds the result of the next chunk.
+    fn append(&mut self, next: Self);
+}
+
+/// Returns true if work may run on other threads.
+pub(super) fn has_threads() -> bool {
+    #[cfg(feature = "parallel")]
+    return rayon::current_num_threads() > 1;
+    #[cfg(not(feature = "parallel"))]
+    false
+}
+
+/// Calls both, maybe on two threads.
+fn join(first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
+    #[cfg(feature = "parallel")]
+    rayon::join(first, second);
+    #[cfg(not(feature = "parallel"))]
+    {
+        first();
+        second();
+    }
+}
+
+/// Calls `work` with all items: at once, or in chunks of at least `least` items on several threads.
+pub(super) fn in_chunks<T: Send, R: ChunkResult>(
+    items: &mut [T],
+    least: usize,
+    result: &mut R,
+    work: &(impl Fn(&mut [T], &mut R) + Sync),
+) {
+    if items.len() < 2 * least || !has_threads() {
+        return work(items, result);
+    }
+    let (first, second) = items.split_at_mut(items.len() / 2);
+    let mut next = R::default();
+    join(|| in_chunks(first, least, result, work), || in_chunks(second, least, &mut next, work));
+    result.append(next);
 }

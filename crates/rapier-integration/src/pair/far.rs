@@ -16,10 +16,9 @@ use sbbk_core::contact::{Feature, FeaturePair, ManifoldPoints, TriangleContact, 
 use super::borders::is_past_border;
 use super::islands::OverlapIslands;
 use super::query::ContactList;
+use super::shapes::TriangleShape;
+use super::shapes::{NEAR_NORMAL, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 use super::surface::{SurfaceFilter, Verdict};
-use super::triangle_contacts::in_local;
-use super::triangle_shape::TriangleShape;
-use super::triangle_shapes::{NEAR_NORMAL, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
@@ -220,12 +219,11 @@ impl TriangleShapes<'_> {
     /// Returns the contact of a point and the nearest triangle of the other shape. The point is in the frame of
     /// shape `i`, and stands for the start of a half-edge.
     fn of_point(&self, i: usize, half_edge: u32, point: Vec3, within: Real) -> Option<TriangleHit> {
-        let placement = &self.pose.placement12;
         let in_other = self.pose.in_other(i, point);
         let mut pair = [self[1 - i].nearest_triangle(in_other, within)?; 2];
         pair[i] = half_edge / 3;
         let mut local = self.local(pair)?;
-        local.corners[i] = [in_local(placement, i, point, local.origin); 3];
+        local.corners[i] = [self.pose.in_local(i, point, local.origin); 3];
         let [t1, t2] = &local.corners;
         let contact = contact(t1, t2, f64::from(within))?;
         let mut features = [contact.features.feature1(), contact.features.feature2()];

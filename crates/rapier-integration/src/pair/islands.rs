@@ -103,7 +103,8 @@ impl Support {
     }
 }
 
-/// A triangle of mesh 1 (0) or 2 (1), or of mesh 1 (2) or 2 (3) in an unserved pair.
+/// A triangle and its group: 0 for mesh 1, 1 for mesh 2. The triangles of [unserved](IslandPlace::is_unserved) pairs are of the
+/// groups 2 and 3.
 type Node = (usize, u32);
 
 /// Overlap of two triangles along a direction.
@@ -119,7 +120,7 @@ pub(super) struct Unsupported {
     pub(super) pair: [u32; 2],
     /// True if the pair has a final contact.
     pub(super) has_contact: bool,
-    /// Depth from which the way out of a contour is of no use to the island. Infinite if contacts are too few.
+    /// The way out of a contour is of use to the island if it is shorter. Infinite if contacts are too few.
     pub(super) most: f64,
     /// Signs with which the normals of the triangles lead out of the shapes.
     pub(super) outward: [f64; 2],

@@ -1,3 +1,4 @@
+use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
@@ -10,7 +11,7 @@ pub(crate) struct PairPose {
     /// Pose in f64.
     pub(super) placement12: Placement,
     /// Shape 1 in the frame of shape 2.
-    pub(super) placement21: Placement,
+    placement21: Placement,
     /// The prediction distance.
     pub(super) prediction: Real,
 }
@@ -21,14 +22,22 @@ impl PairPose {
         Self { pos12: *pos12, placement12, placement21: placement12.inverted(), prediction }
     }
 
-    /// Returns the placement of shape 1 (false) or 2 (true) in the frame of the other shape.
-    pub(super) fn placement_of(&self, is_second: bool) -> &Placement {
-        if is_second { &self.placement12 } else { &self.placement21 }
+    /// Returns the placement of shape 1 (0) or 2 (1) in the frame of the other shape.
+    pub(super) fn placement_of(&self, i: usize) -> &Placement {
+        [&self.placement21, &self.placement12][i]
     }
 
     /// Returns a point of shape 1 (0) or 2 (1) in the frame of the other shape.
     pub(super) fn in_other(&self, i: usize, point: Vector) -> Vector {
-        [&self.placement21, &self.placement12][i].to_frame1(point, Vector::ZERO).as_vec3()
+        self.placement_of(i).to_frame1(point, Vector::ZERO).as_vec3()
+    }
+
+    /// Returns a point of shape 1 (0) or 2 (1) in frame 1, from an origin there.
+    pub(super) fn in_local(&self, i: usize, point: Vector, origin: Vector) -> DVec3 {
+        match i {
+            0 => point.as_dvec3() - origin.as_dvec3(),
+            _ => self.placement12.to_frame1(point, origin),
+        }
     }
 }
 
@@ -37,14 +46,14 @@ impl PairPose {
 pub(crate) struct Moving {
     /// A ball around the shape, in the frame of the shape.
     pub(super) ball: Sphere,
-    /// True for shape 2.
-    pub(super) is_second: bool,
+    /// 0 for shape 1, 1 for shape 2.
+    pub(super) shape: usize,
 }
 
 impl Moving {
     /// Returns the placement of the shape in the frame of the other one.
     pub(super) fn placement(self, pose: &PairPose) -> &Placement {
-        pose.placement_of(self.is_second)
+        pose.placement_of(self.shape)
     }
 }
 
@@ -68,10 +77,7 @@ impl MeshPlace {
     /// Returns the mesh in the frame of the other shape, and the other shape in the frame of the
     /// mesh.
     pub(super) fn placements(self, pose: &PairPose) -> [&Placement; 2] {
-        match self {
-            Self::First => [&pose.placement21, &pose.placement12],
-            Self::Second => [&pose.placement12, &pose.placement21],
-        }
+        self.swap([0, 1].map(|i| pose.placement_of(i)))
     }
 
     /// Returns the mesh in the frame of the other shape.

@@ -118,13 +118,6 @@ pub(crate) struct ContactSummary {
     pub(super) reach: Real,
 }
 
-impl ContactSummary {
-    /// Returns the point and the distance.
-    pub(super) fn place(&self) -> (Vec3, Real) {
-        (self.point, self.distance)
-    }
-}
-
 /// Memory for contact reduction.
 #[derive(Default)]
 pub(crate) struct Reduction {
@@ -218,12 +211,12 @@ impl Reduction {
                 continue;
             }
             places.clear();
-            places.extend(members.iter().map(|Member { summary, .. }| summary.place()));
+            places.extend(members.iter().map(|Member { summary: of, .. }| (of.point, of.distance)));
             outermost.choose(plan, places, |i| members[i].summary.normal);
             for (i, member) in members.iter_mut().enumerate() {
                 let excess = member.summary.reach - plan.size;
                 let is_needed = outermost.chosen.contains(&i)
-                    || excess > 0.0 && !outermost.is_inside_by(i, excess);
+                    || excess > 0.0 && !is_inside(&outermost.hull, outermost.flat[i], excess);
                 member.patch = if is_needed { member.patch } else { NO_PATCH };
             }
         }
@@ -251,9 +244,9 @@ pub(super) struct Outermost {
 }
 
 impl Outermost {
-    /// Chooses the outermost of `points`, which have distances. Point 0 must be the deepest. The body reaches the
-    /// others after the least turn. They are far outside the convex hull, seen along its `normal`, and hardly above the deepest one,
-    /// compared with its depth. More than four are chosen if others as deep are far from these.
+    /// Chooses the outermost of `points`, which come with their distances. Point 0 must be the deepest. Each next point is the one
+    /// that the body reaches after the least turn. Along `normal`, that point is far outside
+    /// the convex hull of those before. It is little above the deepest one. More than four are chosen if others as deep are far from these.
     pub(super) fn choose(
         &mut self,
         plan: PatchPlan,
@@ -331,11 +324,6 @@ impl Outermost {
                 *square = if is_inside(hull, point, 0.0) { 0.0 } else { square.min(to_sides) };
             }
         }
-    }
-
-    /// Returns true if a point is farther than a distance from the border of the hull, and inside.
-    fn is_inside_by(&self, index: usize, distance: Real) -> bool {
-        is_inside(&self.hull, self.flat[index], distance)
     }
 }
 

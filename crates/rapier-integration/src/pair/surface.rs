@@ -18,11 +18,10 @@ use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleCon
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
-use super::islands::{Crossing, IslandPlace, Support};
-use super::triangle_contacts::in_local;
-use super::triangle_shape::ShapeFacets;
-use super::triangle_shapes::{
-    ContactSource, DISTANT, NEAR_NORMAL, TriangleShapes, TriangleSurfaceContact,
+use super::islands::{Crossing, IslandPlace, SAME_SIDE, SheetSide, Support};
+use super::shapes::{
+    ContactSource, DISTANT, LIP, NEAR_NORMAL, OverSheet, ShapeFacets, TriangleShapes,
+    TriangleSurfaceContact,
 };
 use crate::mesh::BEHIND;
 
@@ -34,10 +33,6 @@ const SHALLOW: f64 = 5.0;
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are turned
 /// in vain; lower: slanted contacts keep their normals.
 const UPRIGHT: f64 = 0.999_999;
-
-/// Depth up to which a shape counts as above the plane of a border triangle, in [`filter_unit`](super::triangle_shapes::filter_unit)s.
-/// Higher: rims do not carry what overhangs them. Lower: bodies stumble where meshes meet.
-pub(super) const LIP: f64 = 0.25;
 
 /// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through sheets
 /// that face away from them. Lower: rods and plates sink through sheets.
@@ -268,6 +263,51 @@ impl<'a> SurfaceFilter<'a> {
         Verdict::Crossing(crossing, good.map(|contact| TriangleSurfaceContact { contact, source }))
     }
 
+    /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller sheet,
+    /// is. `None` for two solids, and if the solid is larger than the sheet.
+    pub(super) fn sheet_side(&self, is_solid: [bool; 2]) -> Option<SheetSide> {
+        let smaller = self.smaller();
+        let body = match is_solid {
+            [true, true] => return None,
+            [true, false] => 0,
+            [false, true] => 1,
+            [false, false] => match smaller {
+                Some(smaller) => smaller,
+                // The side must not depend on the order of two sheets of one size.
+                None => return self.side_between(),
+            },
+        };
+        let sheet = 1 - body;
+        if smaller == Some(sheet) {
+            return None;
+        }
+        let (normal, height) = self.height_over(sheet);
+        Some(SheetSide { shape: Some(sheet), away: [normal, -normal][sheet], height })
+    }
+
+    /// Returns the side of two sheets of one size, by the direction from one middle to the other.
+    fn side_between(&self) -> Option<SheetSide> {
+        let [middle1, middle2] = [0, 1].map(|i| self.shapes[i].bounds().center());
+        let between = self.shapes.pose.placement12.to_frame1(middle2, middle1);
+        Some(SheetSide { shape: None, away: between.try_normalize()?, height: between.length() })
+    }
+
+    /// Returns the normal of a sheet's triangle, and the height of the other shape's middle over the front.
+    fn height_over(&self, sheet: usize) -> (DVec3, f64) {
+        let (normal, height) = self.middle_over(sheet);
+        let own = self.in_frame(1 - sheet, normal).as_vec3();
+        let over = self.shapes.over_sheet(sheet);
+        let over = over.map(|over| (over, over.front.dot(normal)));
+        let over = match over.filter(|(_, along)| along.abs() > SAME_SIDE) {
+            Some((over, along)) => OverSheet { height: along.signum() * over.height, ..over },
+            None => {
+                let half_height = f64::from(self.shapes[1 - sheet].height(own));
+                OverSheet { front: normal, height, half_height }
+            }
+        };
+        (normal, self.shapes.leaning(over, sheet, self.pair[sheet]))
+    }
+
     /// Second pass: returns a contact for an island whose `support` is not enough. It may be deeper than its points:
     /// a flat side goes on beyond a triangle.
     pub(super) fn supporting_contact(
@@ -379,7 +419,7 @@ impl<'a> SurfaceFilter<'a> {
 
     /// Returns a point of a shape in frame 1, from the origin of two triangles.
     fn in_local(&self, i: usize, point: Vec3) -> DVec3 {
-        in_local(&self.shapes.pose.placement12, i, point, self.local.origin)
+        self.shapes.pose.in_local(i, point, self.local.origin)
     }
 
     /// Returns a direction of frame 1 in the frame of a shape.
@@ -435,10 +475,6 @@ fn leans([a, b, c]: &[DVec3; 3], direction: DVec3) -> bool {
     let normal = (*b - *a).cross(*c - *a);
     normal.dot(direction).abs() < NEAR_NORMAL * normal.length()
 }
-
-/// Distance, in sizes of the triangles, that rounding of poses to f32 may open between triangles that
-/// touch.
-pub(super) const NEARLY_TOUCHING: f64 = 1.0e-6;
 
 /// Returns the longer of two sides.
 fn size([a, b, c]: &[DVec3; 3]) -> f64 {

@@ -1,41 +1,50 @@
-//! Contacts of two shapes that are both made of triangles.
+//! Contacts of a mesh and another mesh or a height field.
 //!
 //! Each candidate is a pair of triangles with an exact contact ([`sbbk_core::contact`]). The first
 //! pass keeps those that are contacts of the surfaces ([`SurfaceFilter`]). A second pass adds
 //! contacts to crossing triangles that too few contacts push apart ([`OverlapIslands`]).
+//!
+//! Stock Parry finds no contacts of a mesh and a height field. Triangles of a field have the numbers that Parry gives them in
+//! contacts with convex shapes.
+//!
+//! A pair keeps candidates, and Rapier drops them when a shape was edited. For hosts that do not,
+//! another field, scale or flag is noticed at once. A removed triangle is noticed when the pair moves, and an added one at the
+//! next descent.
 
 use std::cell::Cell;
+use std::sync::OnceLock;
 use std::thread::LocalKey;
 
 use glamx::DVec3;
 use parry3d::math::Real;
 use sbbk_core::contact::{ManifoldPoints, TriangleContact, clip, push_closest};
-use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::longest_side;
+use sbbk_core::surface::{Side, longest_side};
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
+use sbbk_core::tree::Tree;
 
-use super::borders::{is_past_border, lead_one_way};
-use super::chunks::{ChunkResult, in_chunks};
+use super::borders::meet_borders;
 use super::deep::{self, ContourMemory};
-use super::descents::DescentMemory;
-use super::inside::{HeldMesh, InsideTest};
-use super::islands::{Crossing, Overlap, OverlapIslands};
-use super::passed::PassedTriangles;
+use super::descents::{ChunkResult, DescentMemory, in_chunks};
+use super::field::{Field, FieldToken};
+use super::islands::{Overlap, OverlapIslands};
 use super::pose::{Moving, PairPose};
-use super::query::{ContactList, ContactPoints, Limits, Memory, PairQuery};
+use super::query::{Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery};
 use super::reduce::{ContactSummary, PatchPlan};
-use super::state::Candidate;
-use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict};
-use super::triangle_contacts::{constrained_normal, contact_of, write_points};
-use super::triangle_shapes::{
-    ContactSource, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
+use super::shapes::{
+    ContactSource, FieldShape, Hint, MeshShape, NEARLY_TOUCHING, Room, TriangleHit, TriangleShape,
+    TriangleShapes, TriangleSurfaceContact, contact_of, filter_distance,
 };
+use super::sides::{HeldMesh, InsideTest, PassedTriangles};
+use super::surface::{SurfaceFilter, Verdict};
+use super::write::{constrained_normal, write_triangle_points};
+use crate::SbbkConfig;
+use crate::mesh::{Change, LazySurface, MeshView, PairMesh, use_trees};
 
 /// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until bodies
 /// have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep inside.
 const DEEPEST: f64 = 4.0;
 
-/// Least number of candidates of a [chunk](super::chunks). Higher: threads wait for each other; lower: threads
+/// Least number of candidates of a chunk. Higher: threads wait for each other; lower: threads
 /// take turns for chunks of a few microseconds.
 const LEAST_CANDIDATES: usize = 256;
 
@@ -54,6 +63,142 @@ pub(crate) struct TriangleQuery<'q> {
     pub(super) in_room: &'q InsideTest,
     /// Tells if one mesh is inside the other.
     pub(super) inside: &'q mut InsideTest,
+}
+
+/// A mesh and another mesh or a height field.
+#[derive(Copy, Clone)]
+pub(crate) struct MeshPair<'a> {
+    pub(crate) pose: &'a PairPose,
+    pub(crate) shapes: [ShapeView<'a>; 2],
+    pub(crate) config: &'a SbbkConfig,
+}
+
+/// A shape during one query.
+#[derive(Copy, Clone)]
+pub(crate) enum ShapeView<'a> {
+    Mesh(MeshView<'a>),
+    Field(Field<'a>),
+}
+
+/// A pair's knowledge of one of its shapes, which is a mesh or a field.
+#[derive(Clone, Default)]
+pub(crate) struct KnownShape {
+    mesh: PairMesh,
+    field: Option<FieldToken>,
+}
+
+impl KnownShape {
+    /// Compares with the shape of the last query, and stores the one of this query.
+    fn update(&mut self, shape: &ShapeView<'_>) -> Change {
+        let field = match shape {
+            ShapeView::Mesh(mesh) => {
+                self.field = None;
+                return self.mesh.update(mesh);
+            }
+            ShapeView::Field(field) => FieldToken::of(field.0),
+        };
+        self.mesh = PairMesh::default();
+        match self.field.replace(field) {
+            None => Change::Unknown,
+            Some(known) if known == field => Change::Unchanged,
+            Some(_) => Change::Replaced,
+        }
+    }
+}
+
+impl MeshPair<'_> {
+    /// Returns true for two meshes that use trees.
+    fn needs_trees(&self) -> bool {
+        let [ShapeView::Mesh(one), ShapeView::Mesh(two)] = &self.shapes else { return false };
+        use_trees([one.mesh, two.mesh])
+    }
+
+    /// Returns true if no shape can change while its token stays.
+    fn are_rigid(&self) -> bool {
+        self.shapes.iter().all(|shape| match shape {
+            ShapeView::Mesh(mesh) => mesh.is_rigid(),
+            ShapeView::Field(_) => true,
+        })
+    }
+
+    /// Returns true for contacts of surfaces.
+    fn has_surfaces(&self) -> bool {
+        self.config.has_surfaces() && self.are_rigid()
+    }
+
+    /// Returns a shape with its tree, if there is one. Meshes get trees for each other.
+    fn opened<'q>(
+        &self,
+        shape: &'q ShapeView<'q>,
+        known: &'q mut KnownShape,
+    ) -> (TriangleShape<'q>, Option<&'q Tree>) {
+        let has_surfaces = self.has_surfaces();
+        match shape {
+            ShapeView::Mesh(view) => {
+                let needs_trees = self.needs_trees();
+                let is_needed = has_surfaces || needs_trees && self.are_rigid();
+                let surface = is_needed.then(|| known.mesh.acquire(view, needs_trees)).flatten();
+                let tree = surface.as_ref().and_then(LazySurface::tree).filter(|_| needs_trees);
+                let surface = surface.filter(|_| has_surfaces);
+                (TriangleShape::Mesh(MeshShape { view, surface, room: Room::No }), tree)
+            }
+            ShapeView::Field(field) => {
+                let is_solid = self.config.solid_height_fields && field.points_up();
+                let side = if is_solid { Side::Outer } else { Side::Sheet };
+                let side = has_surfaces.then_some(side);
+                (TriangleShape::Field(FieldShape { field: *field, side, cone: None }), None)
+            }
+        }
+    }
+}
+
+impl<'a> Pair for MeshPair<'a> {
+    /// The shapes, whether one is a room for the other, and whether one is inside the other.
+    type State = ([KnownShape; 2], [InsideTest; 2]);
+    type Hint = Hint;
+    type Query<'q>
+        = TriangleQuery<'q>
+    where
+        Self: 'q;
+
+    fn pose(&self) -> &PairPose {
+        self.pose
+    }
+
+    fn update(&self, ([known1, known2], tests): &mut Self::State) -> Change {
+        let [shape1, shape2] = &self.shapes;
+        let change = known1.update(shape1).max(known2.update(shape2));
+        if change != Change::Unchanged {
+            *tests = Default::default();
+        }
+        change
+    }
+
+    fn open<'q>(
+        &'q self,
+        ([known1, known2], [in_room, inside]): &'q mut Self::State,
+    ) -> TriangleQuery<'q> {
+        let [shape1, shape2] = &self.shapes;
+        let (shape1, tree1) = self.opened(shape1, known1);
+        let (shape2, tree2) = self.opened(shape2, known2);
+        let radius = shape1.ball().radius.min(shape2.ball().radius);
+        let mut shapes = TriangleShapes {
+            pose: self.pose,
+            larger: usize::from(shape1.size_squared() < shape2.size_squared()),
+            shapes: [shape1, shape2],
+            trees: tree1.zip(tree2).map(<[_; 2]>::from),
+            filter_distance: filter_distance(self.has_surfaces(), radius),
+            reach: OnceLock::new(),
+            over_sheets: Default::default(),
+        };
+        let room = HeldMesh::of(&shapes).map_or(Room::No, |mesh| mesh.room(in_room));
+        if let TriangleShape::Mesh(mesh) = &mut shapes.shapes[shapes.larger] {
+            mesh.room = room;
+        }
+        let has_patches = self.config.has_patches() && self.are_rigid();
+        let patches = has_patches.then(|| PatchPlan::new(self.pose.prediction, radius));
+        TriangleQuery { shapes, patches, in_room, inside }
+    }
 }
 
 /// Memory for queries.
@@ -116,10 +261,6 @@ impl PairQuery for TriangleQuery<'_> {
         &MEMORY
     }
 
-    fn pose(&self) -> &PairPose {
-        self.shapes.pose
-    }
-
     fn moving(&self) -> Moving {
         self.shapes.moving()
     }
@@ -172,12 +313,12 @@ impl PairQuery for TriangleQuery<'_> {
         if islands.finish_first_pass(separation, |pair, way| self.overlap(pair, way)) {
             self.second_pass(islands, contours, clipped, contacts);
         }
-        if limits.reach < f64::from(self.pose().prediction) {
+        if limits.reach < f64::from(self.shapes.pose.prediction) {
             self.shapes.add_far(!*is_near, lead_one_way, clipped, contacts);
         } else if limits.reach > self.shapes.filter_distance {
             self.shapes.reject_aside(directions, islands, contacts);
         }
-        self.reject_passed(islands, passed, contacts);
+        self.shapes.reject_passed(islands, passed, contacts);
         self.shapes.reject_through(&islands.crossings, contacts);
         if contacts.is_empty() {
             let is_in_both = islands.separation.is_some();
@@ -185,7 +326,7 @@ impl PairQuery for TriangleQuery<'_> {
             contacts.extend(held.and_then(|held| held.push_out(is_in_both, self.inside)));
         }
         if contacts.is_empty() {
-            let within = f64::from(self.pose().prediction);
+            let within = f64::from(self.shapes.pose.prediction);
             let contact = |pair: [u32; 2]| self.shapes.nearest_points(pair, within);
             contacts.extend(islands.overlaps().filter_map(contact));
         }
@@ -195,7 +336,7 @@ impl PairQuery for TriangleQuery<'_> {
     /// drops such points of manifolds of more than four, and a falling plate would turn about one point.
     fn reduction(&self, contacts: &ContactList<TriangleSurfaceContact>) -> Option<PatchPlan> {
         let near = self.shapes.filter_distance;
-        let may_be_far = f64::from(self.pose().prediction) > near;
+        let may_be_far = f64::from(self.shapes.pose.prediction) > near;
         let is_far = |(_, hit): &TriangleHit| hit.contact.distance > near;
         if may_be_far && contacts.iter().all(is_far) {
             return Some(PatchPlan::ALL_FAR);
@@ -215,7 +356,7 @@ impl PairQuery for TriangleQuery<'_> {
         let [side1, side2] = corners.map(|of| longest_side(&of.map(|corner| corner.as_dvec3())));
         let of_triangles = self.shapes.cones(*pair);
         let cones = source.cones(&of_triangles);
-        let normal = constrained_normal(contact, cones, &self.pose().pos12)?;
+        let normal = constrained_normal(contact, cones, &self.shapes.pose.pos12)?;
         let point = (origin.as_dvec3() + contact.point1).as_vec3();
         let mut distance = contact.distance as Real;
         if cones.iter().any(Option::is_some) {
@@ -252,7 +393,7 @@ impl PairQuery for TriangleQuery<'_> {
         let pose = shapes.pose;
         let deepest = -shapes.filter_distance.max(DEEPEST * f64::from(pose.prediction));
         clipped.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
-        write_points(pose, &local, contact, clipped, source.cones(&of_triangles), points);
+        write_triangle_points(pose, &local, contact, clipped, source.cones(&of_triangles), points);
     }
 }
 
@@ -265,7 +406,13 @@ impl TriangleQuery<'_> {
         }
         let pair = candidate.subshapes;
         let Some(local) = self.shapes.local(pair) else { return };
-        let Some(contact) = touch(&local, candidate, limits) else { return };
+        let contact = contact_of(&local, limits.margin, candidate.hint);
+        candidate.clear = contact.map_or(limits.margin, |contact| contact.distance) + limits.travel;
+        let Some(contact) = contact else { return };
+        candidate.hint = Some(contact.features);
+        if contact.distance > limits.reach {
+            return;
+        }
         first.is_near = true;
         let Some(filter) = SurfaceFilter::new(&self.shapes, pair, &local) else {
             return first.contacts.push((pair, TriangleSurfaceContact::of_triangles(contact)));
@@ -295,7 +442,7 @@ impl TriangleQuery<'_> {
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         contacts.clear();
-        let within = f64::from(self.pose().prediction);
+        let within = f64::from(self.shapes.pose.prediction);
         let contact = |of: &Candidate<Hint>| self.shapes.nearest_points(of.subshapes, within);
         let is_near = |(_, hit): &TriangleHit| hit.contact.distance <= limits.reach;
         let may_touch = candidates.iter().filter(|candidate| limits.may_touch(candidate));
@@ -323,25 +470,6 @@ impl TriangleQuery<'_> {
         if contacts.len() > old_count {
             contacts.sort_by_key(|(pair, _)| *pair);
             upright.sort_by_key(|(pair, _)| *pair);
-        }
-    }
-
-    /// Removes the contacts of sheets that have passed sheets.
-    fn reject_passed(
-        &self,
-        islands: &OverlapIslands,
-        passed: &mut PassedTriangles,
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        // Surfaces are asked for only where something crosses.
-        let Some(Crossing { pair, .. }) = islands.crossings.first() else { return };
-        if self.shapes[0].is_solid() || self.shapes[1].is_solid() {
-            return;
-        }
-        for i in 0..2 {
-            if let Some(surface) = self.shapes[i].around(pair[i]) {
-                passed.reject(i, &surface.facets, islands.final_normals(i), contacts);
-            }
         }
     }
 
@@ -385,43 +513,6 @@ impl TriangleQuery<'_> {
         contacts.sort_unstable_by_key(|(pair, hit)| (*pair, hit.source != ContactSource::PushOut));
         contacts.dedup_by_key(|(pair, _)| *pair);
     }
-}
-
-/// Gives contacts at borders the normals of the faces, if these lead one way, and returns true then. Removes those that lead
-/// [past a border](is_past_border). Both lists have one order.
-fn meet_borders(
-    upright: &ContactList<DVec3>,
-    contacts: &mut ContactList<TriangleSurfaceContact>,
-) -> bool {
-    if !lead_one_way(upright.iter().map(|(_, normal)| *normal)) {
-        return false;
-    }
-    let mut next = upright.iter().peekable();
-    contacts.retain_mut(|(pair, TriangleSurfaceContact { contact, .. })| {
-        let Some((_, normal)) = next.next_if(|(of, _)| of == pair) else { return true };
-        let cosine = normal.dot(contact.normal);
-        let distance = contact.distance * cosine.max(0.0);
-        let (middle, half) = (contact.point1.midpoint(contact.point2), 0.5 * distance * normal);
-        let (point1, point2) = (middle - half, middle + half);
-        let is_past = is_past_border(contact.distance, cosine);
-        *contact = TriangleContact { normal: *normal, distance, point1, point2, ..*contact };
-        !is_past
-    });
-    true
-}
-
-/// Returns the contact of the triangles of a candidate, if that is in reach.
-#[inline(always)]
-fn touch(
-    local: &TrianglePair,
-    candidate: &mut Candidate<Hint>,
-    Limits { reach, margin, travel }: Limits,
-) -> Option<TriangleContact> {
-    let contact = contact_of(local, margin, candidate.hint);
-    candidate.clear = contact.map_or(margin, |contact| contact.distance) + travel;
-    let contact = contact?;
-    candidate.hint = Some(contact.features);
-    (contact.distance <= reach).then_some(contact)
 }
 
 /// Makes points as deep as a contact that is deeper than all of them.

@@ -1,6 +1,6 @@
 //! The pipeline of a contact query: from the pose of a pair to its manifolds.
 //!
-//! 1. The state of the pair comes from the host's workspace ([`state`](super::state)).
+//! 1. The state of the pair comes from the host's workspace ([`state_in`]).
 //! 2. A change of the shapes since the last query drops what no longer holds.
 //! 3. An equal pose leaves the manifolds as they are. Shapes that were apart, and have moved by less than their distance,
 //!    have none.
@@ -14,22 +14,11 @@ use std::sync::Arc;
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use sbbk_core::traverse::{DescentCounts, SlackPlan};
 
-use super::query::{Limits, Pair, PairQuery, QueryMemory};
-use super::state::{CandidateMemory, PairState, state_in};
+use super::pose::PairPose;
+use super::query::{CandidateMemory, Limits, Pair, PairQuery, PairState, QueryMemory, state_in};
 use super::write::Writer;
 use crate::mesh::MeshStore;
-
-/// Way in which a query was answered.
-pub(crate) enum QueryOutcome {
-    /// By the distance of the shapes: Parry's hierarchy and a box or a ball, or the motion since.
-    Apart,
-    /// By the manifolds of the last query.
-    Unchanged,
-    /// From the candidates of an earlier descent.
-    Reused,
-    /// By a descent.
-    Descended,
-}
+use crate::stats::QueryOutcome;
 
 /// Number of contacts for which a thread always keeps its memory. Higher: more memory; lower: more allocations.
 const LEAST_KEPT: usize = 1024;
@@ -61,7 +50,7 @@ where
     let mut query = pair.open(shapes);
     memory.begin();
     let mut lent = P::Query::memory().take().unwrap_or_default();
-    let outcome = update_contacts(&mut query, memory, counts, &mut lent);
+    let outcome = update_contacts(pose, &mut query, memory, counts, &mut lent);
     let plan = query.reduction(&lent.contacts);
     let had_patches = memory.has_patches.replace(plan.is_some());
     let mut writer = Writer::begin(manifolds, had_patches);
@@ -84,6 +73,7 @@ where
 
 /// Computes the contacts of a query, in the memory of the thread.
 fn update_contacts<Q: PairQuery>(
+    pose: &PairPose,
     query: &mut Q,
     memory: &mut CandidateMemory<Q::Hint>,
     counts: &mut DescentCounts,
@@ -96,10 +86,10 @@ fn update_contacts<Q: PairQuery>(
     }
     let (moving, reach) = (query.moving(), query.reach());
     let had_none = !memory.slack.is_new() && memory.candidates.is_empty();
-    let plan = memory.slack.plan(moving.ball, moving.placement(query.pose()), reach, Q::SLACK);
+    let plan = memory.slack.plan(moving.ball, moving.placement(pose), reach, Q::SLACK);
     let (outcome, margin) = match plan {
-        SlackPlan::Reuse { margin, .. } => (QueryOutcome::Reused, margin),
-        SlackPlan::Descend { margin, .. } => {
+        SlackPlan::Reuse { margin } => (QueryOutcome::Reused, margin),
+        SlackPlan::Descend { margin } => {
             if let Some(clearance) = had_none.then(|| query.clearance(margin)).flatten() {
                 memory.slack.note_clear(clearance);
                 (QueryOutcome::Apart, clearance)

@@ -6,16 +6,23 @@
 use std::any::Any;
 use std::cell::Cell;
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use arrayvec::ArrayVec;
 use glamx::Vec3;
-use parry3d::math::Real;
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::details::NormalConstraintsPair;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
+use sbbk_core::contact::{
+    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip,
+};
+use sbbk_core::query::TrianglePair;
 
-use super::query::{ContactPoints, PairQuery, QueryMemory};
+use super::pose::PairPose;
+use super::query::{ContactPoints, HighWaterMark, PairQuery, QueryMemory};
 use super::reduce::{MOST_POINTS, Member, PatchPlan, PatchPoint, Reduction};
-use super::state::HighWaterMark;
+use super::shapes::Cones;
 
 /// Spare manifolds that a thread keeps, of some 500 bytes each. Higher: more memory; lower: allocations
 /// where pairs lose and gain many contacts at once.
@@ -319,11 +326,9 @@ pub(super) fn write_points<M, C: Default + Copy>(
     previous: &mut Vec<TrackedContact<C>>,
     manifold: &mut ContactManifold<M, C>,
 ) {
-    let is_same = |(old, new): (&TrackedContact<C>, &TrackedContact<()>)| {
-        (old.fid1, old.fid2) == (new.fid1, new.fid2)
-    };
+    let are_same = |(old, new): (&_, &_)| have_same_features(old, new);
     let tracked = &mut manifold.points;
-    if tracked.len() == points.len() && tracked.iter().zip(points).all(is_same) {
+    if tracked.len() == points.len() && tracked.iter().zip(points).all(are_same) {
         for (tracked, point) in tracked.iter_mut().zip(points) {
             (tracked.local_p1, tracked.local_p2, tracked.dist) =
                 (point.local_p1, point.local_p2, point.dist);
@@ -332,7 +337,7 @@ pub(super) fn write_points<M, C: Default + Copy>(
         std::mem::swap(tracked, previous);
         tracked.clear();
         tracked.extend(points.iter().map(|point| {
-            let old = previous.iter().find(|old| is_same((old, point)));
+            let old = previous.iter().find(|old| have_same_features(old, point));
             with_data(point, old.map_or_else(C::default, |old| old.data))
         }));
     }
@@ -351,9 +356,8 @@ fn take_data<M, C: Default + Copy>(manifold: &mut ContactManifold<M, C>, old: &[
     let old = &old[of_part(old, part, |old| old.part)];
     for point in &mut manifold.points {
         let names = named(*point, subshapes);
-        let is_same =
-            |old: &&OldPoint<C>| (old.point.fid1, old.point.fid2) == (names.fid1, names.fid2);
-        point.data = old.iter().find(is_same).map_or_else(C::default, |old| old.point.data);
+        let same = old.iter().find(|old| have_same_features(&old.point, &names));
+        point.data = same.map_or_else(C::default, |old| old.point.data);
     }
 }
 
@@ -378,7 +382,8 @@ fn of_part<T>(list: &[T], part: u32, part_of: impl Fn(&T) -> u32) -> Range<usize
     first..first + list[first..].partition_point(|one| part_of(one) == part)
 }
 
-/// Returns the data of the old point that [`find_old`] finds, which is taken then; empty data if it finds none.
+/// Takes the data of the old point with the features of `point`, or else of the nearest one with its direction, `within` a
+/// distance. Returns empty data without such a point. Moving points pass from triangle to triangle.
 fn take_nearest<C: Copy + Default>(
     point: &TrackedContact<()>,
     normal: Vec3,
@@ -386,27 +391,8 @@ fn take_nearest<C: Copy + Default>(
     old_points: &mut [OldPoint<C>],
     within: Real,
 ) -> C {
-    find_old(point, normal, part, old_points, within).map_or_else(C::default, |old| {
-        old_points[old].is_taken = true;
-        old_points[old].point.data
-    })
-}
-
-/// Returns the index of the old point with the features of `point`, or else of the nearest one with its direction,
-/// `within` a distance. Skips points whose data is taken. Moving points pass from triangle to triangle.
-fn find_old<C>(
-    point: &TrackedContact<()>,
-    normal: Vec3,
-    part: u32,
-    old_points: &[OldPoint<C>],
-    within: Real,
-) -> Option<usize> {
     let of_part = of_part(old_points, part, |old| old.part);
     let free = of_part.filter(|&index| !old_points[index].is_taken);
-    let is_same = |index: &usize| {
-        let old = &old_points[*index].point;
-        old.fid1 == point.fid1 && old.fid2 == point.fid2
-    };
     let nearest = || {
         let likes =
             free.clone().filter(|&index| old_points[index].normal.dot(normal) >= LIKE_NORMAL);
@@ -415,7 +401,15 @@ fn find_old<C>(
         let (index, distance) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         (distance <= within).then_some(index)
     };
-    free.clone().find(is_same).or_else(nearest)
+    let same = free.clone().find(|&index| have_same_features(&old_points[index].point, point));
+    let Some(old) = same.or_else(nearest) else { return C::default() };
+    old_points[old].is_taken = true;
+    old_points[old].point.data
+}
+
+/// Returns true if two points are of the same features.
+fn have_same_features<A, B>(old: &TrackedContact<A>, new: &TrackedContact<B>) -> bool {
+    (old.fid1, old.fid2) == (new.fid1, new.fid2)
 }
 
 /// Returns a point whose features have names of their own among all features of both shapes.
@@ -443,6 +437,77 @@ fn patch_points_of(
     let of = move |&point| PatchPoint { point: named(point, subshapes), contact, normals, poses };
     points.points.iter().map(of)
 }
+
+/// Replaces `points` by the clipped points of a contact of two triangles. The normal is projected into the normal
+/// cones of both triangles; there are no points if the cones reject the contact.
+#[inline(always)]
+pub(super) fn write_triangle_points(
+    pose: &PairPose,
+    triangles: &TrianglePair,
+    contact: &TriangleContact,
+    clipped: &mut ManifoldPoints,
+    cones: Cones<'_>,
+    ContactPoints { normals, points, .. }: &mut ContactPoints,
+) {
+    let PairPose { pos12, placement12, .. } = pose;
+    points.clear();
+    let Some(normal1) = constrained_normal(contact, cones, pos12) else { return };
+    let is_turned = normal1 != contact.normal.as_vec3();
+    if is_turned {
+        let [t1, t2] = &triangles.corners;
+        clip(t1, t2, normal1.as_dvec3().normalize(), clipped);
+    }
+    if cones.iter().any(Option::is_some) {
+        clipped.retain(|point| is_plausible(point, contact));
+    }
+    let names = &*NAMES;
+    points.extend(clipped.iter().map(|point| {
+        let [feature1, feature2] = names[usize::from(point.features.to_bits() & FeaturePair::MASK)];
+        let point1 = (triangles.origin.as_dvec3() + point.point1).as_vec3();
+        let point2 = placement12.to_frame2(point.point2, triangles.origin).as_vec3();
+        TrackedContact::new(point1, point2, feature1, feature2, point.distance as Real)
+    }));
+    *normals = [normal1, pos12.rotation.inverse() * -normal1];
+}
+
+/// Returns the normal in the normal cones of both triangles; `None` if they exclude it.
+#[inline(always)]
+pub(super) fn constrained_normal(
+    contact: &TriangleContact,
+    cones: Cones<'_>,
+    pos12: &Pose,
+) -> Option<Vector> {
+    let mut normal = contact.normal.as_vec3();
+    if cones.iter().any(Option::is_some) {
+        let mut normal2 = pos12.rotation.inverse() * -normal;
+        if !<(_, _)>::from(cones).project_local_normals(pos12, &mut normal, &mut normal2) {
+            return None;
+        }
+    }
+    Some(normal)
+}
+
+/// Returns false for a point that a constrained normal puts more than five times as deep as the
+/// contact: Parry drops such points.
+fn is_plausible(point: &ManifoldPoint, contact: &TriangleContact) -> bool {
+    contact.distance >= 0.0 || point.distance >= 0.0 || point.distance >= 5.0 * contact.distance
+}
+
+/// Names of the features of a point, by [`FeaturePair::to_bits`].
+type Names = [[PackedFeatureId; 2]; FeaturePair::MASK as usize + 1];
+
+/// Parry's names of features. Made once: Parry's constructors are not inlined.
+static NAMES: LazyLock<Names> = LazyLock::new(|| {
+    let name = |feature| match feature {
+        Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
+        Feature::Edge(i) => PackedFeatureId::edge(u32::from(i)),
+        Feature::Face => PackedFeatureId::face(0),
+    };
+    std::array::from_fn(|bits| {
+        let features = FeaturePair::from_bits(bits as u8);
+        [features.feature1(), features.feature2()].map(name)
+    })
+});
 
 #[cfg(test)]
 mod tests;

@@ -54,7 +54,7 @@ impl<'a> MeshQuery<'a> {
         match self.trees() {
             Some(trees) => search_trees(trees, by_trees),
             None => {
-                self.meshes[0].earn_tree();
+                self.meshes[0].store.earn_tree();
                 by_bvhs(self.bvhs())
             }
         }
@@ -74,22 +74,21 @@ impl<'a> MeshQuery<'a> {
         if !self.use_trees() {
             return None;
         }
-        let [mesh1, mesh2] = &self.meshes;
+        let [mesh1, mesh2] = self.meshes.each_ref().map(|view| view.mesh);
         // A large mesh without a tree costs no hash, so the larger one comes first.
-        if mesh1.mesh.indices().len() < mesh2.mesh.indices().len() {
-            let tree2 = mesh2.with_tree()?;
-            return Some([mesh1.with_tree()?, tree2]);
-        }
-        let tree1 = mesh1.with_tree()?;
-        let is_same = std::ptr::eq(mesh1.mesh, mesh2.mesh);
-        let tree2 = if is_same { Arc::clone(&tree1) } else { mesh2.with_tree()? };
-        Some([tree1, tree2])
+        let larger = usize::from(mesh1.indices().len() < mesh2.indices().len());
+        let tree = self.meshes[larger].with_tree()?;
+        let is_same = std::ptr::eq(mesh1, mesh2);
+        let other =
+            if is_same { Arc::clone(&tree) } else { self.meshes[1 - larger].with_tree()? };
+        Some(if larger == 0 { [tree, other] } else { [other, tree] })
     }
 
     /// Returns triangles that touch, if any do.
     pub(super) fn touching(&self) -> Option<[u32; 2]> {
         // The hash of a small mesh would cost more than the query.
-        let registered = |view: &MeshView<'_>| view.registered().filter(|_| self.use_trees());
+        let registered =
+            |view: &MeshView<'_>| view.store.registered(view.mesh).filter(|_| self.use_trees());
         let [mesh1, mesh2] = self.meshes.each_ref().map(registered);
         let pair = if let (Some(tree1), Some(tree2)) = (mesh1, mesh2) {
             search_trees([tree1, tree2], |trees, scratch| meeting(trees, self.placement, scratch))

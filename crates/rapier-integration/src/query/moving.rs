@@ -43,7 +43,7 @@ pub(super) struct MovingConvex<'a, 'q> {
 impl<'a, 'q> MovingConvex<'a, 'q> {
     pub(super) fn new(search: ConvexSearch<'a>, cast: &'q NonlinearCast<'q>) -> Self {
         let options = cast.options(search.mesh_place.swap(search.balls()));
-        let thickness = f64::from(search.thickness());
+        let thickness = f64::from(search.shape.ccd_thickness());
         Self { search, cast, options, thickness, sunk: None }
     }
 
@@ -145,8 +145,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         self.meets_again(&mut one, found.time, until)
     }
 
-    /// True if an impact counts. A shape may be in contact at the start. Its impact counts if the shape approaches by
-    /// its thickness until the end, or sinks deeper.
+    /// True if an impact counts. An impact at the start counts only if the shape then approaches by its thickness, or sinks
+    /// deeper.
     fn counts(&self, one: &mut MovingTriangle<'_>, found: &Advance<Found>, from: f64) -> bool {
         let Self { cast, options, thickness, .. } = self;
         if cast.stop_at_penetration {

@@ -27,7 +27,7 @@ const LOOKS: (f64, f64) = (10.0, 100.0);
 /// lower: more samples.
 const TURN: f64 = 0.5;
 
-/// Share by which points may be faster, as quaternions in f32 are not of unit length.
+/// Allowance for quaternions in f32 that are not of unit length, as a share of the speed.
 const STRETCH: f64 = 1.0e-6;
 
 /// A cast of two bodies in motion.

@@ -268,8 +268,8 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         !is_wall
     }
 
-    /// True if the body is behind all triangles that have nothing in front, as winding numbers change by one at a triangle. Sheets
-    /// of two closed layers at one place are no such meshes.
+    /// True if the body is behind all triangles that have nothing in front, as winding numbers change by one at a triangle. False
+    /// for two closed layers at one place.
     fn has_body_behind(&self) -> bool {
         self.components.is_some_and(|known| known.is_manifold)
     }

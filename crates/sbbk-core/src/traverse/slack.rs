@@ -64,8 +64,6 @@ pub enum SlackPlan {
     Descend {
         /// The prediction distance plus the slack.
         margin: f32,
-        /// [`Slack::travel`] since the descent before.
-        travel: f64,
     },
 }
 
@@ -97,7 +95,8 @@ impl Slack {
         let wide = prediction + slack as f32;
         let margin = if wide.is_finite() { wide } else { prediction };
         self.descent = (margin > prediction).then_some((*placement, margin));
-        SlackPlan::Descend { margin, travel: std::mem::take(&mut self.travel) }
+        self.travel = 0.0;
+        SlackPlan::Descend { margin }
     }
 
     /// Returns true before the first query.

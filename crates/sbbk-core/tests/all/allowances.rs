@@ -319,7 +319,7 @@ fn slack_stays_finite() {
         let mut slack = Slack::default();
         for _ in 0..3 {
             let limits = SlackLimits { steps: 16.0, greatest: 8.0 };
-            let (SlackPlan::Descend { margin, .. } | SlackPlan::Reuse { margin }) =
+            let (SlackPlan::Descend { margin } | SlackPlan::Reuse { margin }) =
                 slack.plan(ball, &placement, prediction, limits);
             assert!(margin.is_finite() && margin >= prediction);
         }

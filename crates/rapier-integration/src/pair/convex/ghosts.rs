@@ -12,8 +12,7 @@
 //! A ghost takes the normal of the nearest triangle at its edge or vertex. The nearest contact may be a
 //! ghost as well. Distances fall along this chain, so the chain ends.
 //!
-//! The tip of a crossing shape may be nearer to the outside of both triangles at an edge than to the
-//! outside of the surface. This is so if a triangle at the edge extends beyond the contact along its
+//! The tip of a crossing shape may be less deep behind both triangles at an edge than in the solid. This is so if a triangle at the edge extends beyond the contact along its
 //! normal. The contact then takes the normal of a face nearby that the shape crosses, if there is one.
 //!
 //! A thin shape that cuts a sharp edge has its end far from the planes of both faces. Two less deep ways
@@ -69,7 +68,7 @@ pub(crate) struct GhostContacts {
     strays: Vec<u32>,
     /// Number of strays of corners.
     kept_strays: u32,
-    /// Contacts of walls at whose foot the shape stands, along the normals of the walls.
+    /// Contacts with walls beside a shape that stands on the floor at their foot, along the normals of the walls.
     pub(super) walls: Vec<(u32, ConvexContact)>,
 }
 
@@ -216,19 +215,14 @@ impl GhostContacts {
         }
     }
 
-    /// Forgets the last contacts.
+    /// Forgets the last contacts, and lists the new ones of each corner.
     fn begin<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [u64; 3]) {
-        self.index(contacts, keys);
         self.kept_strays = 0;
         self.walls.clear();
         self.on_faces.clear();
         self.borders.clear();
         self.sources.clear();
         self.sources.extend(0..contacts.len() as u32);
-    }
-
-    /// Lists the contacts of each corner.
-    fn index<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [u64; 3]) {
         let Self { entries, corners, triangles, .. } = self;
         entries.clear();
         for (contact, (of, _)) in (0..).zip(contacts) {

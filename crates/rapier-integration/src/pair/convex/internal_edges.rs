@@ -210,7 +210,7 @@ impl ConvexQuery<'_> {
                 let [triangle, _] = self.pair.mesh_place.swap(of_other);
                 let is_parting = ghosts.is_true(other) && !pair.extends_beyond(&contact);
                 let parting = is_parting.then(|| own.with_normal_of(&contact));
-                // Against all faces a wedge leads as they do.
+                // A wedge leads against the contact where all faces do.
                 let wedge = face.and_then(|_| {
                     pair.contact_of_wedge(self.pair.mesh.corners(triangle), hull)
                         .filter(|_| is_solid())

@@ -93,7 +93,7 @@ pub(super) fn contact_points(
     }
 }
 
-/// Share of the distance from a border to the nearest point of an edge that its other points may be farther. Higher: rods that stick
+/// Other points of an edge along a border may be farther from the border than the nearest one, by this share. Higher: rods that stick
 /// out over a cliff are held up. Lower: rods that roll over a border turn.
 const ALONG_BORDER: f64 = 0.1;
 

@@ -22,10 +22,9 @@ use super::triangle_part::TrianglePartPair;
 use crate::mesh::{Change, LazySurface, PairMesh, is_covered};
 use crate::pair::pose::{Moving, PairPose};
 use crate::pair::query::{
-    ContactList, ContactPoints, Limits, Memory, Pair, PairQuery, QueryMemory,
+    Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery, QueryMemory,
 };
 use crate::pair::reduce::{ContactSummary, PatchPlan};
-use crate::pair::state::Candidate;
 
 impl<'a> Pair for ConvexPair<'a> {
     /// Data of the mesh and of the parts that the candidates belong to.
@@ -137,16 +136,12 @@ impl PairQuery for ConvexQuery<'_> {
         &MEMORY
     }
 
-    fn pose(&self) -> &PairPose {
-        self.pair.pose
-    }
-
     fn moving(&self) -> Moving {
         let (mesh, parts) = (self.pair.mesh.ball(), self.part_data.ball);
         // The smaller body moves less when it rotates.
         let is_mesh = mesh.radius <= parts.radius;
-        let is_second = self.pair.mesh_place.is_second() == is_mesh;
-        Moving { ball: if is_mesh { mesh } else { parts }, is_second }
+        let shape = usize::from(self.pair.mesh_place.is_second() == is_mesh);
+        Moving { ball: if is_mesh { mesh } else { parts }, shape }
     }
 
     fn calm(&self) -> f64 {
@@ -156,9 +151,9 @@ impl PairQuery for ConvexQuery<'_> {
     /// Returns the prediction distance plus the rounding of sixty operations on the largest coordinates.
     /// The rounding exceeds the error of contacts with curved shapes, 1e-7 of the distance.
     fn reach(&self) -> Real {
-        let offset = self.pose().pos12.translation.abs().max_element();
+        let offset = self.pair.pose.pos12.translation.abs().max_element();
         let largest = self.pair.mesh.magnitude() + offset + self.part_data.magnitude;
-        (self.pose().prediction.max(0.0) + gamma(64) * largest).min(Real::MAX)
+        (self.pair.pose.prediction.max(0.0) + gamma(64) * largest).min(Real::MAX)
     }
 
     /// Forgets the placed parts of the last query. Serves balls, whose contacts and box tests cost less than to
@@ -174,7 +169,7 @@ impl PairQuery for ConvexQuery<'_> {
         let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
         let part = Part { pose: None, shape, cone: None };
         let placed = self.placed(0, &part, scratch);
-        let (prediction, margin) = (self.pose().prediction, self.reach());
+        let (prediction, margin) = (self.pair.pose.prediction, self.reach());
         let (radius, farthest) = (f64::from(ball.radius), f64::from(prediction));
         triangles_near(placed, shape, mesh, margin, counts, |index| {
             let corners = placed.in_part(mesh.corners(index));
@@ -237,7 +232,10 @@ impl PairQuery for ConvexQuery<'_> {
         let is_reduced = self.pair.mesh.is_rigid() && !self.pair.is_ball();
         (is_reduced && self.pair.config.has_patches()).then(|| {
             let radius = self.part_data.patch_radius(&self.pair.parts);
-            PatchPlan::of_convex(self.pose().prediction, radius.min(self.pair.mesh.ball().radius))
+            PatchPlan::of_convex(
+                self.pair.pose.prediction,
+                radius.min(self.pair.mesh.ball().radius),
+            )
         })
     }
 

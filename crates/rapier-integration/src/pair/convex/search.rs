@@ -30,7 +30,7 @@ const WIDE: f64 = 0.1;
 pub(crate) struct ConvexSearch<'a> {
     pub(crate) mesh: MeshView<'a>,
     pub(crate) mesh_place: MeshPlace,
-    pub(super) shape: &'a dyn Shape,
+    pub(crate) shape: &'a dyn Shape,
     pub(super) convex: ConvexShape<'a>,
     pub(crate) placed: PlacedPart,
     /// The shape in the frame of the mesh.
@@ -118,11 +118,6 @@ impl<'a> ConvexSearch<'a> {
     /// Returns the box around the shape in the frame of the mesh.
     pub(crate) fn aabb_in_mesh(&self) -> Aabb {
         self.shape.compute_aabb(&self.pose_in_mesh)
-    }
-
-    /// Returns the depth at which the shape comes out behind a triangle, by Parry.
-    pub(crate) fn thickness(&self) -> Real {
-        self.shape.ccd_thickness()
     }
 
     /// Returns the first triangle found that touches or crosses the shape.

@@ -238,7 +238,7 @@ impl TrianglePartPair<'_> {
     }
 
     /// Returns the contact along the normal of the triangle, for another contact of the part. `None` if the bodies do not cross
-    /// along it. `None`, too, if it leads against the other contact, unless it is [`SHALLOW`].
+    /// along that normal, or if the contact leads against the other one and is not [`SHALLOW`].
     pub(super) fn face_contact_for(&self, other: &ConvexContact) -> Option<ConvexContact> {
         let face = self.crossing_face_contact()?;
         let reach = |direction| self.placed.extent.reach(self.part.shape, direction);

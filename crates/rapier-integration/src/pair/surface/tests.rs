@@ -8,9 +8,9 @@ use super::*;
 use crate::SbbkConfig;
 use crate::mesh::MeshStore;
 use crate::pair::descents::DescentMemory;
-use crate::pair::mesh_pair::{MeshPair, ShapeView};
 use crate::pair::pose::PairPose;
 use crate::pair::query::Pair;
+use crate::pair::triangles::{MeshPair, ShapeView};
 
 /// Balls with triangles as large as the prediction distance, apart and crossing. Would
 /// catch contacts that [`TriangleShapes::lateral_culling`] loses.

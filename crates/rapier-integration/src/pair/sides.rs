@@ -1,18 +1,217 @@
-//! A mesh inside a larger one: in a room, or in a solid that pushes it out.
+//! The side of a surface on which a body is: of a sheet that it crosses or has passed, or of the wall of a room.
+//!
+//! A sheet has two sides, and a body that crosses it leaves to the side of its middle. The nearest point of the sheet
+//! to the middle tells that side for all triangles, so they agree on wavy grounds. A body whose middle is a little
+//! behind the sheet may come from either side. The contacts of the triangles then hold it, as they push both ways.
+//!
+//! The part of a sheet beyond another sheet would be pushed farther. Triangles of that part hang together with triangles
+//! that cross, and their contacts push against those of the crossing triangles.
+//!
+//! A mesh inside a larger one is in a room, or in a solid that pushes it out.
 
+use std::collections::hash_map::Entry;
+
+use glamx::DVec3;
 use parry3d::math::{Real, Vector};
 use parry3d::query::{PointQuery, Ray};
-use sbbk_core::surface::SurfaceKind;
+use rustc_hash::FxHashMap;
+use sbbk_core::surface::{Facets, SurfaceKind};
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
+use super::islands::{Crossing, OverlapIslands, SAME_SIDE};
 use super::pose::PairPose;
-use super::triangle_contacts::in_local;
-use super::triangle_shape::{MeshShape, Room, TriangleShape};
-use super::triangle_shapes::{
-    TriangleHit, TriangleShapes, TriangleSurfaceContact, filter_distance, filter_unit,
+use super::query::ContactList;
+use super::shapes::{
+    ContactSource, LIP, MeshShape, NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape,
+    TriangleShapes, TriangleSurfaceContact, filter_distance, filter_unit,
 };
 use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
+
+/// Greatest depth of a body's middle behind a sheet that still pushes it to the front, in half
+/// heights of the body. Higher: bodies from behind are pulled through; lower: bodies that hit a
+/// ground fast fall out below.
+const LEAN: f64 = 0.33;
+
+impl TriangleShapes<'_> {
+    /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other. The way starts at the
+    /// middle of the smaller one, which must be in both. Two equal meshes are both tried.
+    pub(super) fn separation(&self) -> Option<DVec3> {
+        if !(0..2).all(|i| self[i].is_solid()) {
+            return None;
+        }
+        let sizes = self.shapes.each_ref().map(TriangleShape::size_squared);
+        let is_inner = |i: &usize| sizes[*i] <= sizes[1 - i];
+        let ways = (0..2).filter(is_inner).filter_map(|i| self.way_out(i));
+        ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
+    }
+
+    /// Returns the translation that separates shape 2 from shape 1 by the shortest way from the middle of shape
+    /// `inner`. The middle must be in both shapes, and both must be solids.
+    fn way_out(&self, inner: usize) -> Option<DVec3> {
+        let middle = self[inner].bounds().center();
+        let placed = self.pose.in_other(inner, middle);
+        let out = self[1 - inner].nearest_exit(placed)? - placed;
+        self[inner].nearest_exit(middle)?;
+        let out = if inner == 0 { -(self.pose.pos12.rotation * out) } else { out };
+        Some(out.as_dvec3())
+    }
+
+    /// Returns the position of the other shape over the nearest point of a sheet, unless that is at a border.
+    pub(super) fn over_sheet(&self, sheet: usize) -> Option<OverSheet> {
+        *self.over_sheets[sheet].get_or_init(|| {
+            let (body, rotation) = (1 - sheet, self.pose.pos12.rotation);
+            let middle = self.pose.in_other(body, self[body].bounds().center());
+            let (nearest, behind) = self[sheet].nearest(middle)?;
+            let own = -behind.signum() * (middle - nearest).normalize_or_zero();
+            let [front, on_body] = match sheet {
+                0 => [own, rotation.inverse() * own],
+                _ => [rotation * own; 2],
+            };
+            let distance = f64::from(middle.distance(nearest));
+            let is_on_sheet = distance <= NEARLY_TOUCHING * f64::from(middle.abs().max_element());
+            (is_on_sheet || f64::from(behind).abs() >= SAME_SIDE).then(|| OverSheet {
+                front: front.as_dvec3(),
+                height: f64::from((middle - nearest).dot(own)),
+                half_height: f64::from(self[body].height(on_body)),
+            })
+        })
+    }
+
+    /// Returns the height over the front of a sheet, with a preference for the front. A triangle with a double that is wound the
+    /// other way has no front.
+    pub(super) fn leaning(&self, over: OverSheet, sheet: usize, triangle: u32) -> f64 {
+        let has_front = !self[sheet].is_two_sided(triangle);
+        if has_front { over.height + LEAN * over.half_height } else { over.height }
+    }
+
+    /// Returns the first triangle that crosses a sheet, and the position of the other shape over the sheet.
+    fn crossed_sheet(&self, crossings: &[Crossing]) -> Option<([u32; 2], usize, OverSheet)> {
+        let sheet_of = |crossing: &Crossing| Some((crossing.pair, crossing.sheet?.shape?));
+        let (pair, sheet) = crossings.iter().find_map(sheet_of)?;
+        Some((pair, sheet, self.over_sheet(sheet)?))
+    }
+
+    /// Returns true if triangles cross a sheet, and the body is a little behind the front and may come from either side. A body
+    /// at rest, which sinks in a little, does not.
+    pub(super) fn is_side_doubtful(&self, crossings: &[Crossing]) -> bool {
+        let Some((pair, sheet, over)) = self.crossed_sheet(crossings) else { return false };
+        if self.leaning(over, sheet, pair[sheet]) > 0.0 {
+            return false;
+        }
+        let OverSheet { height, half_height, .. } = over;
+        let sunk = half_height - height.abs();
+        let is_at_rest = (0.0..=LIP * self.filter_unit()).contains(&sunk);
+        !is_at_rest && height.abs() < self.filter_distance
+    }
+
+    /// Removes the contacts that push a body through a sheet which its triangles cross.
+    pub(super) fn reject_through(
+        &self,
+        crossings: &[Crossing],
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        let Some((pair, sheet, over)) = self.crossed_sheet(crossings) else { return };
+        let height = self.leaning(over, sheet, pair[sheet]);
+        let away = [over.front, -over.front][sheet] * height.signum();
+        contacts.retain(|(_, hit)| hit.contact.normal.dot(away) > -SAME_SIDE);
+    }
+
+    /// Removes the contacts of sheets that have passed sheets.
+    pub(super) fn reject_passed(
+        &self,
+        islands: &OverlapIslands,
+        passed: &mut PassedTriangles,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        // Surfaces are asked for only where something crosses.
+        let Some(Crossing { pair, .. }) = islands.crossings.first() else { return };
+        if self[0].is_solid() || self[1].is_solid() {
+            return;
+        }
+        for i in 0..2 {
+            if let Some(surface) = self[i].around(pair[i]) {
+                passed.reject(i, &surface.facets, islands.final_normals(i), contacts);
+            }
+        }
+    }
+}
+
+/// Search for triangles that have passed another sheet. Keeps its memory.
+#[derive(Default)]
+pub(crate) struct PassedTriangles {
+    /// Triangles with the normals of their contacts apart, sorted by triangle.
+    apart: Vec<(u32, DVec3)>,
+    /// Triangles that cross or have passed, in the order of discovery, and the directions in which
+    /// the crossing ones push.
+    found: Vec<(u32, DVec3)>,
+    /// The directions by triangle.
+    directions: FxHashMap<u32, DVec3>,
+}
+
+impl PassedTriangles {
+    /// Removes the contacts of triangles of shape `i` that have passed the other shape. `crossing` has
+    /// triangles of shape `i`, and the directions in which their contacts push.
+    pub(super) fn reject(
+        &mut self,
+        i: usize,
+        surface: &impl Facets,
+        crossing: impl Iterator<Item = (u32, DVec3)>,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        self.apart.clear();
+        let apart = contacts.iter().filter(|(_, contact)| is_apart(contact));
+        self.apart.extend(apart.map(|(pair, contact)| (pair[i], contact.contact.normal)));
+        if self.apart.is_empty() {
+            return;
+        }
+        self.apart.sort_unstable_by_key(|&(triangle, _)| triangle);
+        self.found.clear();
+        self.directions.clear();
+        crossing.for_each(|(triangle, away)| self.add(triangle, away));
+        self.spread(surface);
+        contacts.retain(|(pair, contact)| {
+            let away = self.directions.get(&pair[i]).filter(|_| is_apart(contact));
+            away.is_none_or(|&away| !opposes(contact.contact.normal, away))
+        });
+    }
+
+    /// Adds a triangle, unless it was found before.
+    fn add(&mut self, triangle: u32, away: DVec3) {
+        if let Entry::Vacant(entry) = self.directions.entry(triangle) {
+            entry.insert(away);
+            self.found.push((triangle, away));
+        }
+    }
+
+    /// Adds the neighbours of all triangles that were found, if these have passed.
+    fn spread(&mut self, surface: &impl Facets) {
+        let mut next = 0;
+        while let Some(&(triangle, away)) = self.found.get(next) {
+            next += 1;
+            for half_edge in (0..3).filter_map(|edge| surface.twin(3 * triangle + edge)) {
+                if self.has_passed(half_edge / 3, away) {
+                    self.add(half_edge / 3, away);
+                }
+            }
+        }
+    }
+
+    /// Returns true if a contact of a triangle pushes against a direction.
+    fn has_passed(&self, triangle: u32, away: DVec3) -> bool {
+        let first = self.apart.partition_point(|&(other, _)| other < triangle);
+        let mut own = self.apart[first..].iter().take_while(|&&(other, _)| other == triangle);
+        own.any(|&(_, normal)| opposes(normal, away))
+    }
+}
+
+fn is_apart(contact: &TriangleSurfaceContact) -> bool {
+    contact.source == ContactSource::Triangles
+}
+
+fn opposes(normal: DVec3, away: DVec3) -> bool {
+    normal.dot(away) < -SAME_SIDE
+}
 
 /// Part of a body that may stick out of a room that holds it, in half heights of the body. If faces lead in, the other part is
 /// enough. Higher: bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
@@ -36,8 +235,8 @@ pub(crate) enum InsideTest {
     Unknown,
     /// The larger mesh is no solid.
     NoSolid,
-    /// The larger mesh was such a room at this placement of the smaller mesh, and stays one for this motion. It was
-    /// [none](Room::No) if a point of the smaller mesh was as far outside.
+    /// The larger mesh was such a room at this placement of the smaller mesh, and stays one for this motion. [`Room::No`] if a
+    /// point of the smaller mesh was this far outside.
     Known(Room, Placement, f64),
 }
 
@@ -173,7 +372,7 @@ impl<'a> HeldMesh<'a> {
         let is_room = !self.is_lower(self.least_height(), middle, exit, -1.0)
             || depth + height >= self.pose.prediction
                 && !self.is_lower(2.0 * height, middle, exit, -1.0);
-        // At either depth, all is as deep beyond.
+        // From this depth on, the result stays the same.
         let enough = self.held.ball().radius.min(0.5 * self.least_height());
         is_room.then_some(depth - enough)
     }
@@ -185,7 +384,7 @@ impl<'a> HeldMesh<'a> {
 
     /// Returns the placement of the held mesh in the frame of the holder.
     fn placement(&self) -> &'a Placement {
-        self.pose.placement_of(self.outer == 0)
+        self.pose.placement_of(1 - self.outer)
     }
 
     /// Least height of a room.
@@ -261,8 +460,7 @@ impl<'a> HeldMesh<'a> {
         subshapes[outer] = triangle;
         let first = if outer == 0 { holder } else { held };
         let origin = first.corners(subshapes[0])[0];
-        let mut points =
-            [exit, from].map(|point| in_local(&pose.placement12, outer, point, origin));
+        let mut points = [exit, from].map(|point| pose.in_local(outer, point, origin));
         if outer == 1 {
             points.reverse();
         }

@@ -1,20 +1,207 @@
-//! A shape made of triangles: a mesh or a height field, as the contact query sees it.
+//! Two shapes made of triangles, as the contact query sees them. A shape is a mesh or a height field.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Index};
+use std::sync::OnceLock;
 
 use glamx::DVec3;
-use parry3d::bounding_volume::Aabb;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
+use parry3d::partitioning::BvhNode;
+use parry3d::query::details::NormalConstraints;
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::{CompositeShapeRef, Triangle, TrianglePseudoNormals};
-use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Facets, MinimumCones, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact, contact_from};
+use sbbk_core::query::TrianglePair;
+use sbbk_core::surface::{self, Around, Facets, MinimumCones, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::tree::Tree;
 use sbbk_core::volumes::Sphere;
+use sbbk_core::volumes::rounding::gamma;
 
 use super::field::Field;
-use crate::mesh::{
-    BEHIND, LazySurface, MeshFacets, MeshView, ends_within, exit, is_covered, nearest_triangle,
-};
+use super::pose::{Moving, PairPose};
+use super::reduce::FILTERED;
+use crate::mesh::{BEHIND, LazySurface, MeshFacets, MeshView, exit, is_covered};
+
+/// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
+/// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
+/// with less warning.
+pub(super) const DISTANT: f64 = 0.25;
+
+/// Least cosine between the normal of a [`DISTANT`] contact and both triangle normals. Higher:
+/// smooth bodies lose contacts; lower: gears are braked.
+pub(super) const NEAR_NORMAL: f64 = 0.87;
+
+/// Depth up to which a shape counts as above the plane of a border triangle, in [`filter_unit`]s.
+/// Higher: rims do not carry what overhangs them. Lower: bodies stumble where meshes meet.
+pub(super) const LIP: f64 = 0.25;
+
+/// Distance, in sizes of the triangles, that rounding of poses to f32 may open between triangles that
+/// touch.
+pub(super) const NEARLY_TOUCHING: f64 = 1.0e-6;
+
+/// Returns the distance up to which contacts must be local minima, from the radius of the smaller shape.
+pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
+    if has_surface { f64::from(FILTERED * radius) } else { f64::INFINITY }
+}
+
+/// Returns the unit of the filter: the prediction distance, or less for small shapes.
+pub(super) fn filter_unit(pose: &PairPose, filter_distance: f64) -> f64 {
+    f64::from(pose.prediction).min(filter_distance)
+}
+
+/// Normal cones of both triangles.
+pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
+
+/// Features that were closest at the last query, to be tried first.
+pub(super) type Hint = Option<FeaturePair>;
+
+/// Two shapes made of triangles at a pose. One of them is a mesh.
+pub(crate) struct TriangleShapes<'q> {
+    pub(super) pose: &'q PairPose,
+    pub(super) shapes: [TriangleShape<'q>; 2],
+    /// Trees of two meshes, if both have one.
+    pub(super) trees: Option<[&'q Tree; 2]>,
+    /// 0 if shape 1 is the larger one or a height field, else 1.
+    pub(super) larger: usize,
+    /// Distance up to which contacts must be local minima; infinite for contacts of each two triangles. Farther contacts
+    /// belong to soft CCD and need not be minima, as bodies may turn before they meet.
+    pub(super) filter_distance: f64,
+    /// See [`reach`](Self::reach).
+    pub(super) reach: OnceLock<Real>,
+    /// Position of the other shape over each shape that is a [sheet](super::sides).
+    pub(super) over_sheets: [OnceLock<Option<OverSheet>>; 2],
+}
+
+/// Position of the middle of a shape over the nearest point of a sheet.
+#[derive(Copy, Clone)]
+pub(super) struct OverSheet {
+    /// Direction from the back of the sheet to the front, in frame 1.
+    pub(super) front: DVec3,
+    /// Height over the front.
+    pub(super) height: f64,
+    /// Height of the shape over its middle.
+    pub(super) half_height: f64,
+}
+
+impl<'q> Index<usize> for TriangleShapes<'q> {
+    type Output = TriangleShape<'q>;
+
+    /// Returns shape 1 (0) or 2 (1).
+    #[inline(always)]
+    fn index(&self, i: usize) -> &TriangleShape<'q> {
+        &self.shapes[i]
+    }
+}
+
+impl TriangleShapes<'_> {
+    /// Returns two triangles in frame 1, relative to a corner: with all digits. `None` if one does not exist.
+    #[inline(always)]
+    pub(super) fn local(&self, [triangle1, triangle2]: [u32; 2]) -> Option<TrianglePair> {
+        let corners1 = self[0].corners(triangle1)?;
+        Some(TrianglePair::new(&self.pose.placement12, corners1, self[1].corners(triangle2)?))
+    }
+
+    /// Returns true for contacts of surfaces.
+    pub(super) fn has_surface(&self) -> bool {
+        self.filter_distance < f64::INFINITY
+    }
+
+    /// Returns the normal cones that contacts of two triangles obey: none for contacts of surfaces.
+    #[inline(always)]
+    pub(super) fn cones(&mut self, triangles: [u32; 2]) -> [Option<TrianglePseudoNormals>; 2] {
+        if self.has_surface() {
+            return [None, None];
+        }
+        let [shape1, shape2] = &mut self.shapes;
+        [shape1.cone(triangles[0]), shape2.cone(triangles[1])]
+    }
+
+    /// Returns the body whose motion limits how long candidates serve: the smaller one.
+    pub(super) fn moving(&self) -> Moving {
+        let smaller = 1 - self.larger;
+        Moving { ball: self[smaller].ball(), shape: smaller }
+    }
+
+    /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one, if that is more than
+    /// `margin`.
+    pub(super) fn clearance(&self, margin: Real) -> Option<Real> {
+        let (TriangleShape::Mesh(larger), TriangleShape::Mesh(_)) =
+            (&self[self.larger], &self[1 - self.larger])
+        else {
+            return None;
+        };
+        let Sphere { centre, radius } = self.moving().ball;
+        let placed = self.pose.in_other(1 - self.larger, centre);
+        let offset = self.pose.pos12.translation.abs().max_element();
+        let size = larger.view.magnitude() + centre.abs().max_element() + radius + offset;
+        let reach = radius + gamma(64) * size;
+        let clearance = larger.view.distance_beyond(placed, reach + margin)? - reach;
+        (clearance > margin && clearance.is_finite()).then_some(clearance)
+    }
+
+    /// Returns the unit of the filter: the prediction distance, or less for small shapes.
+    pub(super) fn filter_unit(&self) -> f64 {
+        filter_unit(self.pose, self.filter_distance)
+    }
+}
+
+/// A contact and its subshapes.
+pub(super) type TriangleHit = ([u32; 2], TriangleSurfaceContact);
+
+/// A contact of two triangles, or of the surfaces around them.
+#[derive(Copy, Clone)]
+pub(crate) struct TriangleSurfaceContact {
+    pub(super) contact: TriangleContact,
+    pub(super) source: ContactSource,
+}
+
+impl TriangleSurfaceContact {
+    /// A contact of two triangles.
+    pub(super) fn of_triangles(contact: TriangleContact) -> Self {
+        Self { contact, source: ContactSource::Triangles }
+    }
+
+    /// Returns a contact that pushes shapes apart along a normal, at points that belong to no feature.
+    pub(super) fn push_out(normal: DVec3, distance: f64, [point1, point2]: [DVec3; 2]) -> Self {
+        let features = FeaturePair::new(Feature::Face, Feature::Face);
+        let contact = TriangleContact { normal, distance, point1, point2, features };
+        Self { contact, source: ContactSource::PushOut }
+    }
+}
+
+/// Origin of a contact.
+#[derive(Copy, Clone, PartialEq)]
+pub(super) enum ContactSource {
+    /// Two triangles; their closest points are points of the contact.
+    Triangles,
+    /// Two crossing triangles, along an axis that leads out of solids.
+    OutwardAxis,
+    /// Two shapes, one inside the other, or deep in each other.
+    PushOut,
+}
+
+impl ContactSource {
+    /// Returns the normal cones of both triangles that a contact obeys.
+    pub(super) fn cones(self, of_triangles: &[Option<TrianglePseudoNormals>; 2]) -> Cones<'_> {
+        of_triangles.each_ref().map(|cone| {
+            let cone = cone.as_ref().filter(|_| self != Self::PushOut)?;
+            Some(cone as &dyn NormalConstraints)
+        })
+    }
+}
+
+/// Returns the contact of two triangles within a distance. `hint` has the features to be tried first.
+#[inline(always)]
+pub(super) fn contact_of(
+    TrianglePair { corners: [t1, t2], .. }: &TrianglePair,
+    within: f64,
+    hint: Hint,
+) -> Option<TriangleContact> {
+    match hint {
+        Some(features) => contact_from(t1, t2, within, features),
+        None => contact(t1, t2, within),
+    }
+}
 
 /// A shape made of triangles.
 pub(crate) enum TriangleShape<'q> {
@@ -205,9 +392,17 @@ impl TriangleShape<'_> {
 
     /// Returns true if a solid ends within a length along a ray that starts in it. The ground below a height field
     /// has no end.
-    pub(super) fn ends_within(&self, ray: [DVec3; 2], length: f64) -> bool {
-        let Self::Mesh(mesh) = self else { return false };
-        ends_within(mesh.view.mesh, ray, length, self.outward())
+    pub(super) fn ends_within(&self, [start, direction]: [DVec3; 2], length: f64) -> bool {
+        let Self::Mesh(MeshShape { view: MeshView { mesh, .. }, .. }) = self else { return false };
+        let ends = [start, start + length * direction].map(|end| end.as_vec3());
+        // The box has all points of the ray, as rounding to f32 is monotonic up to one step.
+        let segment = Aabb::from_points(ends)
+            .loosened(Real::EPSILON * ends[0].abs().max(ends[1].abs()).max_element());
+        let segment = BvhNode::leaf(segment, 0);
+        let near = mesh.bvh().leaves(|node| node.intersects(&segment));
+        let corners =
+            |triangle| mesh.triangle(triangle).vertices().map(|corner| corner.as_dvec3() - start);
+        surface::ends_within(near.map(corners), direction, length, self.outward())
     }
 
     /// Returns true if a point may be in the body. Rays disagree on points of the surface. Sheets have the body behind them.
@@ -252,7 +447,10 @@ impl TriangleShape<'_> {
     /// another that is near.
     pub(super) fn nearest_triangle(&self, point: Vector, within: Real) -> Option<u32> {
         match self {
-            Self::Mesh(mesh) => nearest_triangle(mesh.view.mesh, point, within),
+            Self::Mesh(mesh) => {
+                let nearest = CompositeShapeRef(mesh.view.mesh);
+                Some(nearest.project_local_point(point, within, false)?.0)
+            }
             Self::Field(FieldShape { field, .. }) => field.nearest_triangle(point, within),
         }
     }
@@ -273,57 +471,46 @@ pub(super) enum ShapeFacets<'a> {
     Field(Field<'a>),
 }
 
+/// Calls the triangles of either kind of shape.
+macro_rules! either {
+    ($facets:expr, $of:ident => $call:expr) => {
+        match $facets {
+            ShapeFacets::Mesh($of) => $call,
+            ShapeFacets::Field($of) => $call,
+        }
+    };
+}
+
 impl Facets for ShapeFacets<'_> {
     #[inline]
     fn twin(&self, half_edge: u32) -> Option<u32> {
-        match self {
-            Self::Mesh(mesh) => mesh.twin(half_edge),
-            Self::Field(field) => field.twin(half_edge),
-        }
+        either!(self, of => of.twin(half_edge))
     }
 
     #[inline(always)]
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
-        match self {
-            Self::Mesh(mesh) => mesh.corner(half_edge, i),
-            Self::Field(field) => field.corner(half_edge, i),
-        }
+        either!(self, of => of.corner(half_edge, i))
     }
 
     #[inline]
     fn is_whole(&self, triangle: u32, feature: Feature) -> bool {
-        match self {
-            Self::Mesh(mesh) => mesh.is_whole(triangle, feature),
-            Self::Field(field) => field.is_whole(triangle, feature),
-        }
+        either!(self, of => of.is_whole(triangle, feature))
     }
 
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        match self {
-            Self::Mesh(mesh) => mesh.near(corners, visit),
-            Self::Field(field) => field.near(corners, visit),
-        }
+        either!(self, of => of.near(corners, visit))
     }
 
     fn outward(&self, triangle: u32) -> f64 {
-        match self {
-            Self::Mesh(mesh) => mesh.outward(triangle),
-            Self::Field(field) => field.outward(triangle),
-        }
+        either!(self, of => of.outward(triangle))
     }
 
     #[inline]
     fn cones(&self, triangle: u32) -> MinimumCones {
-        match self {
-            Self::Mesh(mesh) => mesh.cones(triangle),
-            Self::Field(field) => field.cones(triangle),
-        }
+        either!(self, of => of.cones(triangle))
     }
 
     fn memo(&self) -> Option<&PlaceMemo> {
-        match self {
-            Self::Mesh(mesh) => mesh.memo(),
-            Self::Field(_) => None,
-        }
+        either!(self, of => of.memo())
     }
 }
