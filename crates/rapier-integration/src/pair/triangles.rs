@@ -1,6 +1,6 @@
 //! Contacts of a mesh and another mesh or a height field.
 //!
-//! Each candidate is a pair of triangles with an exact contact ([`sbbk_core::contact`]). The first
+//! Each candidate is a pair of triangles with an exact contact ([`sbbk_core::contact`](mod@sbbk_core::contact)). The first
 //! pass keeps those that are contacts of the surfaces ([`SurfaceFilter`]). A second pass adds
 //! contacts to crossing triangles that too few contacts push apart ([`OverlapIslands`]).
 //!
