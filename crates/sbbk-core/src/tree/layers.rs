@@ -1,7 +1,6 @@
 use glamx::Vec3;
 
-use super::build::BuildNode;
-use crate::volumes::{Kdop, SLABS, directions};
+use crate::volumes::{Aabb, Kdop, SLABS, directions};
 
 /// Least [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut) of a tree with k-DOPs. Higher: boxes
 /// for more meshes; lower: k-DOPs for more meshes.
@@ -52,21 +51,21 @@ impl LayerPlan {
         self.kdop_from_depth.is_some_and(|from| depth >= from)
     }
 
-    /// Chooses a plan for a tree with these `kdops` of the [`Self::CANDIDATE`]. Also returns their
-    /// cut.
-    pub(super) fn choose(nodes: &[BuildNode], kdops: &[Kdop]) -> (Self, f32) {
+    /// Chooses a plan for a tree with nodes of these depths, boxes, and k-DOPs of the [`Self::CANDIDATE`]. Also returns the
+    /// cut of the k-DOPs.
+    pub(super) fn choose<'a>(nodes: impl Iterator<Item = (u32, Aabb, &'a Kdop)>) -> (Self, f32) {
         let diagonals = &directions::DIRECTIONS[3..];
         let per_edge: Vec3 = diagonals.iter().map(|direction| direction.abs()).sum();
         // Cuts by depth; the last one sums all deeper layers.
         let mut cuts = [0.0; 5];
         let mut all = 0.0;
-        for (node, kdop) in nodes.iter().zip(kdops) {
-            let area = f64::from(node.aabb.half_area());
+        for (depth, aabb, kdop) in nodes {
+            let area = f64::from(aabb.half_area());
             all += area;
-            let box_width = per_edge.dot(node.aabb.max - node.aabb.min);
-            if node.depth > 0 && box_width > 0.0 {
+            let box_width = per_edge.dot(aabb.max - aabb.min);
+            if depth > 0 && box_width > 0.0 {
                 let width: f32 = (3..SLABS).map(|axis| kdop.max[axis] - kdop.min[axis]).sum();
-                cuts[node.depth.min(4) as usize] += area * f64::from(1.0 - width / box_width);
+                cuts[depth.min(4) as usize] += area * f64::from(1.0 - width / box_width);
             }
         }
         // The share is not finite if boxes have no area or an infinite one.

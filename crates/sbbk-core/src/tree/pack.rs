@@ -22,7 +22,9 @@ pub(super) fn pack(
     let (layers, kdop_cut) = match options.layers {
         Some(layers) => (layers, None),
         None => {
-            let (layers, cut) = LayerPlan::choose(&built.nodes, &kdops);
+            let nodes = built.nodes.iter().zip(&kdops);
+            let nodes = nodes.map(|(node, kdop)| (node.depth, node.aabb, kdop));
+            let (layers, cut) = LayerPlan::choose(nodes);
             (layers, Some(cut))
         }
     };
