@@ -7,8 +7,9 @@ use std::time::Instant;
 use glamx::{Quat, Vec3};
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Pose;
-use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::{Ball, Compound, Cuboid, Shape, SharedShape};
+use rapier3d::parry::query::details::ShapeCastOptions;
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
+use rapier3d::parry::shape::{Ball, Compound, Cuboid, Shape, SharedShape, TriMesh};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{Pair, Question, cone, fan, shape, with};
@@ -230,5 +231,36 @@ fn parts_of_centimetres_do_not_cost_the_square_of_their_triangles() {
         for (few, many) in few.into_iter().zip(many) {
             assert!(!is_slow(few, many), "gap {gap}: {few:.4} s, {many:.4} s");
         }
+    }
+}
+
+/// Prints microseconds of casts and distances. A cuboid meets as many triangles at once as are under it. Would catch an exact
+/// test of each of these.
+#[test]
+#[ignore = "times queries of microseconds"]
+fn flat_shapes_over_a_fine_floor_take_little_longer() {
+    const COUNT: u32 = 1000;
+    let (cuboid, dispatcher) = (Cuboid::new(Vec3::splat(0.5)), SbbkDispatcher::default());
+    let pose = |i: u32| Pose::from_translation(Vec3::new(1e-3 * i as f32, 0.7, 0.2));
+    let micros = |floor: &TriMesh, ask: &dyn Fn(Pose, &TriMesh)| {
+        let start = Instant::now();
+        (0..COUNT).for_each(|i| ask(pose(i), floor));
+        1e6 * start.elapsed().as_secs_f64() / f64::from(COUNT)
+    };
+    let cast = |pose: Pose, floor: &TriMesh| {
+        let options = ShapeCastOptions::with_max_time_of_impact(2.0);
+        let hit = dispatcher.cast_shapes(&pose, Vec3::NEG_Y, floor, &cuboid, options);
+        let time = hit.expect("known shapes").map(|hit| hit.time_of_impact);
+        assert!(time.is_some_and(|time| (time - 0.2).abs() < 1e-6), "{time:?}");
+    };
+    let distance = |pose: Pose, floor: &TriMesh| {
+        let found = dispatcher.distance(&pose, floor, &cuboid).expect("known shapes").distance;
+        assert!((found - 0.2).abs() < 1e-6, "{found}");
+    };
+    let asked: [(&str, &dyn Fn(Pose, &TriMesh)); 2] = [("cast", &cast), ("distance", &distance)];
+    for (name, ask) in asked {
+        let [few, many] = [16, 256].map(|cells| micros(&shape(&mesh::floor(8.0, cells)), ask));
+        println!("{name}: {few:.2} us over 512 triangles, {many:.2} over 131,072");
+        assert!(many < 8.0 * few, "{name}: {few:.2} us, {many:.2} us");
     }
 }

@@ -4,6 +4,8 @@
 //! therefore approaches the first impact from before, or shows that there is none. Normals of curved
 //! shapes are not exact: after a step that goes too far, the next one uses the rule of false position.
 
+use std::cell::Cell;
+
 use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::query::details::ShapeCastOptions;
@@ -12,7 +14,7 @@ use sbbk_core::query::first_that_counts;
 
 use super::contact::{core_contact, core_support};
 use super::near::time_of;
-use super::search::{ConvexSearch, FoundTriangle};
+use super::search::{ConvexSearch, FoundTriangle, SupportPlane};
 use crate::mesh::is_minimum;
 use crate::pair::pose::MeshPlace;
 
@@ -56,6 +58,13 @@ impl ConvexSearch<'_> {
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
         let latest = f64::from(max_time_of_impact);
         let may_slide = !options.stop_at_penetration && target > 0.0;
+        let plane = Cell::new(None::<SupportPlane>);
+        let time_along = |of: SupportPlane, node| {
+            let approach = of.normal.dot(of_triangle);
+            let time = (of.gap_of_box(node) - f64::from(target)) / approach;
+            if approach > 0.0 && time.is_finite() { time as Real } else { 0.0 }
+        };
+        let time = |node| time(node).max(plane.get().map_or(0.0, |of| time_along(of, node)));
         self.least(latest, time, |triangle, best| {
             let latest = latest.min(best);
             let cast = |target_distance: Real| {
@@ -65,7 +74,11 @@ impl ConvexSearch<'_> {
             let counts = |cast: &FoundCast| !may_slide || self.is_minimum(&cast.found);
             let cast = first_that_counts(target_distance, cast, counts)?;
             let time = cast.time as Real;
-            (f64::from(time) < best).then_some((time, cast))
+            let is_less = f64::from(time) < best;
+            if is_less {
+                plane.set(Some(self.support_plane(cast.found.contact.normal)));
+            }
+            is_less.then_some((time, cast))
         })
     }
 

@@ -1,8 +1,9 @@
 //! Queries of a mesh and one convex shape: nearest, touching and deepest triangles.
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use glamx::DVec3;
+use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::partitioning::BvhNode;
@@ -12,7 +13,7 @@ use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
 use super::contact::{KeptHull, core_contact, core_support, core_touches};
-use super::near::{gap_of, time_of, triangles_near};
+use super::near::{gap_of, lowest, time_of, triangles_near};
 use super::parts::{Part, PlacedPart};
 use super::shape::{ConvexShape, Extent};
 use crate::mesh::{MeshView, box_of};
@@ -21,6 +22,9 @@ use crate::pair::pose::{MeshPlace, PairPose};
 /// Distance up to which bodies touch, as a share of their coordinates in the frame of the shape: the
 /// rounding of a distance of zero. Higher: bodies touch early; lower: rounding separates bodies.
 const TOUCHING: f64 = 1.0e-12;
+
+/// Rounding of heights in f64, as a share of coordinates.
+const ROUNDING: f64 = 1.0e-14;
 
 /// Limit, as a share of the shape's size, above which `deepest` first searches for the nearest triangle.
 /// Changes time alone. Higher: slower far from the mesh; lower: slower near it.
@@ -62,19 +66,28 @@ impl FoundTriangle {
     }
 }
 
-/// The deepest triangle so far.
-struct Deepest {
-    found: FoundTriangle,
-    /// Least coordinate of the shape along the normal of the contact.
-    lowest: f64,
+/// A plane on which the shape stands, across the normal of a contact. All of the mesh that is farther than the contact is below
+/// the plane by more than its distance.
+#[derive(Copy, Clone)]
+pub(super) struct SupportPlane {
+    /// Unit vector from the mesh to the shape, in the frame of the shape.
+    pub(super) normal: DVec3,
+    /// The normal in the frame of the mesh, where the plane is at `height`.
+    normal_in_mesh: DVec3,
+    height: f64,
 }
 
-impl Deepest {
-    /// Returns the gap between a triangle and the shape along the normal of this contact. No distance is less, as the
-    /// distance is the greatest gap of all directions.
-    fn gap(&self, corners: &[DVec3; 3]) -> f64 {
-        let heights = corners.map(|corner| self.found.contact.normal.dot(corner));
-        self.lowest - heights.into_iter().fold(f64::NEG_INFINITY, f64::max)
+impl SupportPlane {
+    /// Returns the gap between a triangle and the shape along the normal. No distance is less, as the distance is the greatest
+    /// gap of all directions.
+    fn gap(&self, corners: [Vec3; 3]) -> f64 {
+        let heights = corners.map(|corner| self.normal_in_mesh.dot(corner.as_dvec3()));
+        self.height - heights.into_iter().fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Returns the gap between a box of the mesh and the shape along the normal.
+    pub(super) fn gap_of_box(&self, node: TestedBox) -> f64 {
+        self.height + lowest(node, -self.normal_in_mesh)
     }
 }
 
@@ -148,26 +161,30 @@ impl<'a> ConvexSearch<'a> {
             let nearest = self.nearest(limit)?;
             return if nearest.is_touching { self.deepest(0.0) } else { Some(nearest) };
         }
-        let mut deepest = None::<Deepest>;
+        let mut deepest = None::<(FoundTriangle, SupportPlane)>;
         self.visit_near(limit, |triangle| {
-            let least = deepest.as_ref().map_or(f64::INFINITY, |d| d.found.contact.distance);
-            let corners = self.placed.in_part(self.mesh.corners(triangle));
-            if deepest.as_ref().is_some_and(|deepest| deepest.gap(&corners) >= least) {
+            let least = deepest.map_or(f64::INFINITY, |(found, _)| found.contact.distance);
+            if deepest.is_some_and(|(_, plane)| plane.gap(self.mesh.corners(triangle)) >= least) {
                 return;
             }
             let found = self.triangle(&self.placed, triangle, limit);
             if let Some(found) = found.filter(|found| found.contact.distance < least) {
-                deepest = Some(Deepest { found, lowest: self.lowest(found.contact.normal) });
+                deepest = Some((found, self.support_plane(found.contact.normal)));
             }
         });
-        deepest.map(|deepest| deepest.found)
+        deepest.map(|(found, _)| found)
     }
 
-    /// Returns the least coordinate of the shape along a direction in its frame.
-    fn lowest(&self, direction: DVec3) -> f64 {
-        let support = core_support(self.convex, &self.hull, -direction);
+    /// Returns the plane across a normal in the frame of the shape on which the shape stands. It is lower by the rounding of
+    /// heights.
+    pub(super) fn support_plane(&self, normal: DVec3) -> SupportPlane {
+        let Placement { rotation, translation, .. } = self.placed.placement;
+        let support = core_support(self.convex, &self.hull, -normal);
         let radius = f64::from(self.convex.radius());
-        support.map_or(f64::NEG_INFINITY, |point| direction.dot(point) - radius)
+        let lowest = support.map_or(f64::NEG_INFINITY, |point| normal.dot(point) - radius);
+        let size = f64::from(self.placed.extent.size() + self.mesh.magnitude());
+        let height = lowest - normal.dot(translation) - ROUNDING * (size + translation.length());
+        SupportPlane { normal, normal_in_mesh: rotation.transpose() * normal, height }
     }
 
     /// Calls `found` with the triangles that touch or are within `limit`.
@@ -187,8 +204,11 @@ impl<'a> ConvexSearch<'a> {
 
     /// Returns the nearest triangle within `limit`: one that touches, if any does.
     pub(crate) fn nearest(&self, limit: f64) -> Option<FoundTriangle> {
-        self.least(limit, self.gap(), |triangle, limit| {
+        let (gap, plane) = (self.gap(), Cell::new(None::<SupportPlane>));
+        let gap = |node| gap(node).max(plane.get().map_or(0.0, |of| of.gap_of_box(node) as Real));
+        self.least(limit, gap, |triangle, limit| {
             let found = self.triangle(&self.placed, triangle, limit)?;
+            plane.set(Some(self.support_plane(found.contact.normal)));
             Some(((found.contact.distance as Real).max(0.0), found))
         })
     }
@@ -233,7 +253,11 @@ impl<'a> ConvexSearch<'a> {
         let found = self.mesh.mesh.bvh().find_best(
             limit,
             |node: &BvhNode, _| bound(box_of(node)),
-            |triangle, best| cost(triangle, best.into()),
+            |triangle, best| {
+                // A flat shape may meet many triangles of a floor at once. Costs that round to the best one are of no use.
+                let less = f64::from(best).midpoint(best.next_down().into());
+                cost(triangle, if best < limit { less } else { best.into() })
+            },
         );
         found.map(|(_, (_, found))| found)
     }
