@@ -1,4 +1,7 @@
-use glamx::Vec3;
+use std::f32::consts::PI;
+
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::{Pose, Real};
 use sbbk_testkit::mesh::{self, Mesh};
@@ -61,4 +64,35 @@ fn bodies_over_an_edge_of_a_block_touch_nothing() {
         }
     }
     assert!(count > 10_000, "{count} contacts");
+}
+
+/// Flat bodies that are sunk in the top of a block and reach past its edge by up to 2 cm, or nearly so. Would catch contacts with the
+/// wall behind the edge, which lead into the block and stop bodies that slide off.
+#[test]
+fn bodies_sunk_in_a_block_do_not_meet_the_wall_below_its_edge() {
+    let half = Vec3::new(0.1, 0.05, 0.08);
+    let bodies = [
+        ("cuboid", SharedShape::cuboid(half.x, half.y, half.z)),
+        ("cylinder", SharedShape::cylinder(half.y, half.x)),
+        ("cone", SharedShape::cone(half.y, half.x)),
+        ("mesh", mesh::cuboid(half, 1).shape()),
+    ];
+    let (every, mut random, mut count) = (every(), Rand32::new(11), 0);
+    let blocks = [1, 4].map(|cells| mesh::cuboid(Vec3::new(1.0, 0.5, 1.0), cells).shape());
+    for i in 0..300 {
+        for (name, body) in &bodies {
+            let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
+            let turn = Quat::from_rotation_y(within(-PI, PI));
+            let reach = body.compute_aabb(&Pose::from_rotation(turn)).maxs.x;
+            let over = 1.0 - reach + within(-0.02, 0.02);
+            let place = Vec3::new(over, 0.5 + half.y - within(0.0, 0.005), within(-0.5, 0.5));
+            let pose = Pose::from_parts(place, turn);
+            let block = &blocks[i % 2];
+            let found = Question::new(&*block.0, &*body.0, pose).fresh(&every);
+            let least = found.iter().map(|manifold| manifold.local_n1.x).reduce(Real::min);
+            assert!(least.is_some_and(|x| x > -0.5), "{name} at {pose:?}: {least:?}");
+            count += found.len();
+        }
+    }
+    assert!(count > 1000, "{count} contacts");
 }

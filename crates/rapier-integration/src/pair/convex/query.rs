@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::thread::LocalKey;
 
-use glamx::DVec3;
+use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use sbbk_core::contact::convex::ConvexContact;
@@ -25,6 +25,10 @@ use crate::pair::query::{
     Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery, QueryMemory,
 };
 use crate::pair::reduce::{ContactSummary, PatchPlan};
+
+/// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher: bodies catch on walls behind
+/// the edge that they slide over. Lower: rounding decides about contacts along the surface.
+const TANGENTIAL: f64 = 1.0e-4;
 
 impl<'a> Pair for ConvexPair<'a> {
     /// Data of the mesh and of the parts that the candidates belong to.
@@ -261,9 +265,9 @@ impl PairQuery for ConvexQuery<'_> {
 }
 
 impl ConvexQuery<'_> {
-    /// Removes the contacts of triangles that have the body on both sides. Asks for sides only where
-    /// contacts push in different directions. Parts whose middle is in a solid keep all contacts: the solid is a room, and the
-    /// triangles are of what stands there.
+    /// Removes the contacts of triangles that have the body on both sides, and those that lead into the body. Asks for sides only
+    /// where contacts push in different directions. Parts whose middle is in a solid keep all contacts: the solid is a room, and
+    /// the triangles are of what stands there. Crossing triangles keep contacts that lead in unless another one leads out.
     fn drop_inner_walls(
         &self,
         contacts: &mut ContactList<PartContact>,
@@ -279,15 +283,41 @@ impl ConvexQuery<'_> {
             && surface.kind() != SurfaceKind::Sheet
         {
             let mut last = None;
-            contacts.retain(|(of, _)| {
+            let leads_out = |hit: &([u32; 2], PartContact), scratch: &mut ConvexScratch| {
+                hit.1.contact.distance < 0.0 && !self.leads_in(surface, hit, scratch)
+            };
+            let has_way_out = contacts.iter().any(|hit| leads_out(hit, scratch));
+            contacts.retain(|hit @ (of, PartContact { contact, .. })| {
                 let [triangle, part] = self.pair.mesh_place.swap(*of);
-                surface.around(triangle).side != Side::Inner || {
+                let leads_in =
+                    (has_way_out || contact.distance > 0.0) && self.leads_in(surface, hit, scratch);
+                let is_within = surface.around(triangle).side == Side::Inner;
+                !(leads_in || is_within) || {
                     let known = last.filter(|(of, _)| *of == part);
                     let within = || (part, self.is_middle_within(surface, part, scratch));
                     last.insert(known.unwrap_or_else(within)).1
                 }
             });
         }
+    }
+
+    /// Returns true if a contact leads into the body behind its triangle.
+    fn leads_in(
+        &self,
+        surface: &LazySurface<'_>,
+        (of, hit): &([u32; 2], PartContact),
+        scratch: &mut ConvexScratch,
+    ) -> bool {
+        let [triangle, _] = self.pair.mesh_place.swap(*of);
+        let around = surface.around(triangle);
+        let [a, b, c] = self.pair.mesh.corners(triangle).map(Vec3::as_dvec3);
+        let inward = -around.side.outward().unwrap_or(0.0) * (b - a).cross(c - a);
+        let direction =
+            self.with_pair(*of, scratch, |pair| pair.placed.directions(hit.contact.normal)[0]);
+        direction.is_some_and(|direction| {
+            inward.dot(direction) > TANGENTIAL * inward.length()
+                && around.points_inside(triangle, hit.feature, direction)
+        })
     }
 
     /// Returns the normal of a contact in the axes of the mesh. A single part needs no common axes and keeps its own.
