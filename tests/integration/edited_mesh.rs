@@ -9,6 +9,7 @@ use sbbk_testkit::mesh;
 use crate::support::{
     Manifold, Pair, Question, assert_same, distance, having, sequence, shape, triangles,
 };
+use crate::worlds::world_of;
 
 /// A ring of 576 triangles.
 pub fn torus() -> TriMesh {
@@ -109,9 +110,8 @@ struct Overlap {
 
 impl Overlap {
     fn new() -> Self {
-        let mut world = PhysicsWorld::new();
+        let mut world = world_of([], SbbkDispatcher::default());
         world.gravity = Vector::ZERO;
-        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
         let collider = || ColliderBuilder::new(SharedShape::new(torus()));
         let (_, one) = world.insert(RigidBodyBuilder::fixed(), collider());
         let (_, two) = world.insert(RigidBodyBuilder::dynamic().pose(beside()), collider());

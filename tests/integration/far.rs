@@ -5,8 +5,9 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::Real;
-use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
+
+use crate::worlds::world_of;
 
 /// A cradle of fine triangles rises under a bar of fine triangles. Its sides touch the bar first. Would catch a bottom without contacts.
 /// Rapier keeps contacts of the sides for five centimetres, so the bar passed through the bottom.
@@ -27,8 +28,7 @@ fn a_cradle_that_touches_a_bar_at_its_sides_lifts_the_bar() {
             part(wall, -side - 0.5 * WALL, WIDTH),
         ];
         let cradle = ColliderBuilder::new(Mesh::merged("cradle", &parts).shape());
-        let mut world = PhysicsWorld::new();
-        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        let mut world = world_of([], SbbkDispatcher::default());
         for z in [0.085, -0.085] {
             let support = ColliderBuilder::cuboid(0.05, 0.05, 0.01);
             world.insert(RigidBodyBuilder::fixed().translation(Vec3::new(0.0, -0.05, z)), support);

@@ -7,14 +7,14 @@ use rapier_integration::{ContactDetail, SbbkDispatcher};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::TriMeshFlags;
-use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder};
+use rapier3d::prelude::{ColliderBuilder, RigidBody, RigidBodyBuilder};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
     Manifold, Pair, Question, assert_same, counting, declare_solid, distance, every, nudge,
     per_triangle, shape, shape_with, turned_inside_out, with,
 };
-use crate::worlds::on_ground;
+use crate::worlds::{on_ground, watched};
 
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
 
@@ -142,15 +142,12 @@ fn a_body_that_starts_in_a_solid_comes_out_slowly() {
         let (dispatcher, slab) = (SbbkDispatcher::default(), solid(ground));
         let _solid = declare_solid(&dispatcher, slab.as_trimesh().expect("a mesh"));
         let slab = ColliderBuilder::new(slab).translation(-ground.y * Vec3::Y);
-        let mut world = on_ground(slab, dispatcher);
+        let world = on_ground(slab, dispatcher);
         let at = RigidBodyBuilder::dynamic().translation(Vec3::new(0.2, half - depth, 0.1));
-        let (body, _) = world.insert(at, ColliderBuilder::new(solid(Vec3::splat(half))));
         let mut fastest: Real = 0.0;
-        for _ in 0..240 {
-            world.step();
-            fastest = fastest.max(world.bodies[body].linvel().length());
-        }
-        let height = world.bodies[body].translation().y - half;
+        let look = |body: &RigidBody| fastest = fastest.max(body.linvel().length());
+        let body = ColliderBuilder::new(solid(Vec3::splat(half)));
+        let height = watched(240, world, at, body, look).translation().y - half;
         assert!(height.abs() < 0.01 && fastest < 5.0, "{height} {fastest} from {depth}");
     }
 }

@@ -13,6 +13,7 @@ use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile,
 
 use crate::determinism::run;
 use crate::support::with;
+use crate::worlds::on_ground;
 
 /// Bytes of trees that stay when their meshes are gone: little, so that the bound is soon reached.
 const IDLE_BYTES: usize = 1 << 20;
@@ -31,11 +32,8 @@ struct Soak {
 impl Soak {
     /// A mesh floor without bodies.
     fn new() -> Self {
-        let mut world = PhysicsWorld::new();
-        let floor = collider(&mesh::terrain(24.0, 24, 0.6));
-        world.insert(RigidBodyBuilder::fixed(), floor);
         let dispatcher = with(|config| config.idle_tree_bytes = IDLE_BYTES);
-        world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+        let world = on_ground(collider(&mesh::terrain(24.0, 24, 0.6)), dispatcher.clone());
         Self { world, dispatcher, random: Rand32::new(1), bodies: VecDeque::new() }
     }
 

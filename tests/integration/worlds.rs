@@ -9,29 +9,63 @@ use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, RigidBody, RigidBodyBuilder, RigidBodyHandle};
 use sbbk_testkit::mesh::{self, Mesh};
 
-/// A world with a fixed ground. Stock answers if there is no dispatcher.
-pub fn on_ground(
-    ground: ColliderBuilder,
+/// A world of fixed colliders. Stock answers if there is no dispatcher.
+pub fn world_of(
+    fixed: impl IntoIterator<Item = ColliderBuilder>,
     dispatcher: impl Into<Option<SbbkDispatcher>>,
 ) -> PhysicsWorld {
     let mut world = PhysicsWorld::new();
     if let Some(dispatcher) = dispatcher.into() {
         world.narrow_phase.set_query_dispatcher(dispatcher);
     }
-    world.insert(RigidBodyBuilder::fixed(), ground);
+    fixed.into_iter().for_each(|collider| _ = world.insert(RigidBodyBuilder::fixed(), collider));
     world
+}
+
+/// A world with a fixed ground. Stock answers if there is no dispatcher.
+pub fn on_ground(
+    ground: ColliderBuilder,
+    dispatcher: impl Into<Option<SbbkDispatcher>>,
+) -> PhysicsWorld {
+    world_of([ground], dispatcher)
+}
+
+/// Adds a body to a world, steps it, and looks at the body after each step. Returns it at the end.
+pub fn watched(
+    steps: usize,
+    mut world: PhysicsWorld,
+    body: RigidBodyBuilder,
+    collider: ColliderBuilder,
+    mut look: impl FnMut(&RigidBody),
+) -> RigidBody {
+    let (body, _) = world.insert(body, collider);
+    for _ in 0..steps {
+        world.step();
+        look(&world.bodies[body]);
+    }
+    world.bodies[body].clone()
 }
 
 /// Adds a body to a world and steps it. Returns the body at the end.
 pub fn after(
     steps: usize,
-    mut world: PhysicsWorld,
+    world: PhysicsWorld,
     body: RigidBodyBuilder,
     collider: ColliderBuilder,
 ) -> RigidBody {
-    let (body, _) = world.insert(body, collider);
+    watched(steps, world, body, collider, |_| ())
+}
+
+/// Adds bodies to a world and steps it. Returns where they are at the end.
+pub fn settled(
+    steps: usize,
+    mut world: PhysicsWorld,
+    bodies: impl IntoIterator<Item = (RigidBodyBuilder, ColliderBuilder)>,
+) -> Vec<Vec3> {
+    let insert = |(body, collider)| world.insert(body, collider).0;
+    let bodies: Vec<_> = bodies.into_iter().map(insert).collect();
     (0..steps).for_each(|_| world.step());
-    world.bodies[body].clone()
+    bodies.iter().map(|&body| world.bodies[body].translation()).collect()
 }
 
 /// Height of the lowest vertex of a mesh.

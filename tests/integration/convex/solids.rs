@@ -4,13 +4,13 @@ use rapier_integration::{ContactDetail, SbbkDispatcher};
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::SharedShape;
-use rapier3d::prelude::RigidBodyBuilder;
+use rapier3d::prelude::{RigidBody, RigidBodyBuilder};
 use sbbk_core::surface::SurfaceKind;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::shapes::shapes;
 use crate::support::{Pair, Question, assert_bits, rotation, with};
-use crate::worlds::on_ground;
+use crate::worlds::{on_ground, watched};
 
 fn leading_out(detail: ContactDetail) -> SbbkDispatcher {
     with(|config| (config.convex_leave_solids, config.detail) = (true, detail))
@@ -35,18 +35,16 @@ fn fall(
     shape: &SharedShape,
     height: Real,
 ) -> [Real; 2] {
-    let mut world = on_ground(ColliderBuilder::new(mesh.clone()), dispatcher);
+    let world = on_ground(ColliderBuilder::new(mesh.clone()), dispatcher);
     let body = RigidBodyBuilder::dynamic().translation(Vec3::new(0.37, height, 0.21));
-    let (body, _) = world.insert(body, ColliderBuilder::new(shape.clone()));
     let mut fastest: Real = 0.0;
-    for _ in 0..180 {
-        world.step();
-        let body = &world.bodies[body];
+    let look = |body: &RigidBody| {
         if body.translation().y > -3.0 {
             fastest = fastest.max(body.linvel().length());
         }
-    }
-    [world.bodies[body].translation().y, fastest]
+    };
+    let end = watched(180, world, body, ColliderBuilder::new(shape.clone()), look);
+    [end.translation().y, fastest]
 }
 
 /// Slabs of two units, whose upper side is at 0, of few triangles and of many. Would catch bodies that

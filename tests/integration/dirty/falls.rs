@@ -1,6 +1,6 @@
 use glamx::{Pose3, Vec2, Vec3};
 use oorandom::Rand32;
-use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::dynamics::{RigidBody, RigidBodyBuilder};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::math::Real;
 use rapier3d::parry::shape::Capsule;
@@ -9,6 +9,7 @@ use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::random::rotation;
 
 use super::world;
+use crate::worlds::{lowest, watched};
 
 /// Flat grounds at height 0.
 fn grounds() -> [(&'static str, SharedShape); 9] {
@@ -45,18 +46,14 @@ fn bodies() -> [Mesh; 4] {
 /// Drops a body without friction. Returns its greatest horizontal speed, and its depth at the end.
 fn fall(ground: &SharedShape, body: &Mesh, random: &mut Rand32) -> [Real; 2] {
     let smooth = |shape: SharedShape| ColliderBuilder::new(shape).friction(0.0);
-    let mut world = world(smooth(ground.clone()));
+    let world = world(smooth(ground.clone()));
     let [x, z, y] = [(); 3].map(|()| random.rand_float());
     let pose = Pose3::from_parts(Vec3::new(x, 3.0 + y, z), rotation(random));
     let falling = RigidBodyBuilder::dynamic().pose(pose);
-    let (body_handle, _) = world.insert(falling, smooth(body.shape()));
     let mut fastest: Real = 0.0;
-    for _ in 0..240 {
-        world.step();
-        fastest = fastest.max(world.bodies[body_handle].linvel().with_y(0.0).length());
-    }
-    let lowest = crate::worlds::lowest(body, world.bodies[body_handle].position());
-    [fastest, -lowest]
+    let look = |body: &RigidBody| fastest = fastest.max(body.linvel().with_y(0.0).length());
+    let end = watched(240, world, falling, smooth(body.shape()), look);
+    [fastest, -lowest(body, end.position())]
 }
 
 /// Would catch contacts aslant to a flat ground: without friction they alone push bodies aside. At 8 m/s a step

@@ -1,11 +1,12 @@
 use glamx::Vec3;
 use oorandom::Rand32;
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
 use super::world;
+use crate::worlds::settled;
 
 /// Half the size of a slab of twelve triangles, whose top is at height 0, and of a body.
 const SLAB: Vec3 = Vec3::new(8.0, 0.5, 8.0);
@@ -39,20 +40,15 @@ fn crates() -> Vec<(Vec3, Vec3)> {
     vec![at(1.0, 1.0), at(1.0, -1.0), at(-1.0, 1.0), at(-1.0, -1.0)]
 }
 
-/// Counts bodies that are lost: they have sunk into the slab, or passed the plane z = 0.
-fn lost(level: &Mesh, body: &SharedShape, starts: impl Iterator<Item = (Vec3, Vec3)>) -> usize {
-    let mut world = world(ColliderBuilder::new(level.shape()));
-    let insert = |(place, velocity)| {
-        let start = RigidBodyBuilder::dynamic().translation(place).linvel(velocity);
-        (world.insert(start, ColliderBuilder::new(body.clone()).friction(0.1)).0, velocity)
-    };
-    let bodies: Vec<_> = starts.map(insert).collect();
-    (0..120).for_each(|_| world.step());
-    let is_lost = |(body, velocity): &(RigidBodyHandle, Vec3)| {
-        let place = world.bodies[*body].translation();
-        place.y < 0.8 * BODY || velocity.z > 0.0 && place.z > 0.0
-    };
-    bodies.iter().filter(|body| is_lost(body)).count()
+/// Counts bodies that are lost: they have sunk into the slab, or are driven past the plane z = 0.
+fn lost(level: &Mesh, body: &SharedShape, speed: f32, places: impl Iterator<Item = Vec3>) -> usize {
+    let world = world(ColliderBuilder::new(level.shape()));
+    let bodies = places.map(|place| {
+        let start = RigidBodyBuilder::dynamic().translation(place).linvel(speed * Vec3::Z);
+        (start, ColliderBuilder::new(body.clone()).friction(0.1))
+    });
+    let is_lost = |place: &&Vec3| place.y < 0.8 * BODY || speed > 0.0 && place.z > 0.0;
+    settled(120, world, bodies).iter().filter(is_lost).count()
 }
 
 /// Would catch triangles that have no contacts where another part covers their middles alone.
@@ -66,12 +62,10 @@ fn levels_of_boxes_hold_bodies() {
     let mut cases = Vec::new();
     for (column, body) in bodies {
         for sunk in SUNK {
-            let dropped = places().map(|place| (place, Vec3::ZERO));
             let row = (-4..=4).map(|x| Vec3::new(x as f32, BODY + 0.01, -1.5));
-            let driven = row.map(|place| (place, Vec3::Z * 3.0));
             for (name, count) in [
-                ("crates", lost(&level(&crates(), sunk), &body, dropped)),
-                ("a wall", lost(&level(&wall, sunk), &body, driven)),
+                ("crates", lost(&level(&crates(), sunk), &body, 0.0, places())),
+                ("a wall", lost(&level(&wall, sunk), &body, 3.0, row)),
             ] {
                 let (row, shown) = (format!("{name} {sunk} sunk"), count.to_string());
                 cases.push(Case { row, column, shown, is_right: count == 0 });
@@ -101,15 +95,14 @@ fn debris_stays_on_floors_of_slabs() {
                 ColliderBuilder::new(mesh::cuboid(half, 1).shape())
             })
             .collect();
-        let mut world = world(ColliderBuilder::new(floor.shape()));
-        for i in 0..300 {
+        let bodies = (0..300).map(|i| {
             let place = Vec3::new(within(2.0, 8.0), 1.0 + 0.01 * i as f32, within(-4.0, 1.0));
             let turn = Vec3::from_array([(); 3].map(|()| within(-3.0, 3.0)));
             let body = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
-            world.insert(body, pieces[i % 20].clone());
-        }
-        (0..240).for_each(|_| world.step());
-        let lost = world.bodies.iter().filter(|(_, body)| body.translation().y < -0.05).count();
+            (body, pieces[i % 20].clone())
+        });
+        let world = world(ColliderBuilder::new(floor.shape()));
+        let lost = settled(240, world, bodies).iter().filter(|place| place.y < -0.05).count();
         assert_eq!(lost, 0, "of 300 pieces on {}, seed {seed}", floor.name);
     }
 }

@@ -9,7 +9,7 @@ use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
 
-use crate::worlds::on_ground;
+use crate::worlds::{on_ground, world_of};
 
 /// Meshes with triangles that are there several times.
 mod doubles;
@@ -60,12 +60,12 @@ fn prepared_world(shapes: &[&SharedShape], is_prepared: bool) -> (PhysicsWorld, 
     let prepared = shapes.iter().filter(|_| is_prepared);
     let prepared = prepared.filter_map(|shape| dispatcher.prepare_shape(shape).expect("no defect"));
     let prepared = prepared.collect();
-    let mut world = PhysicsWorld::new();
-    world.narrow_phase.set_query_dispatcher(dispatcher);
-    (world, prepared)
+    (world_of([], dispatcher), prepared)
 }
 
-/// The name of a row, marked if meshes have flags.
-fn row(name: &str, flags: TriMeshFlags) -> String {
-    if flags.is_empty() { name.into() } else { format!("{name}{}", table::FLAG) }
+/// Each of these, with all flags of a run.
+fn with_flags<T: Clone>(
+    items: impl IntoIterator<Item = T>,
+) -> impl Iterator<Item = (TriMeshFlags, T)> {
+    items.into_iter().flat_map(|item| FLAGS.map(|flags| (flags, item.clone())))
 }

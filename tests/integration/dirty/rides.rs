@@ -2,15 +2,16 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
-use rapier3d::dynamics::RigidBodyBuilder;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::dynamics::{RigidBody, RigidBodyBuilder};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::random::rotation;
 
 use super::table::{Case, judge};
-use super::{FLAGS, prepared_world, row, world};
-use crate::worlds::after;
+use super::{FLAGS, world};
+use crate::worlds::{after, watched, world_of};
 
 const FRICTION: f32 = 0.1;
 /// Steps in which a body lands.
@@ -110,7 +111,7 @@ impl Course {
                 let road: Vec<ColliderBuilder> = colliders.collect();
                 for (rider, controls) in riders.iter().zip(&controls) {
                     let rides = self.rides(&road, rider);
-                    cases.push(case(row(name, flags), rider, &rides, controls));
+                    cases.push(case(name, flags, rider, &rides, controls));
                 }
             }
         }
@@ -133,28 +134,23 @@ impl Course {
             Start::Lying => heading * Quat::from_rotation_x(FRAC_PI_2),
             Start::Any => rotation(&mut random),
         };
-        let mut world = prepared_world(&[], false).0;
-        for collider in ground {
-            world.insert(RigidBodyBuilder::fixed(), collider.clone().friction(FRICTION));
-        }
+        let ground = ground.iter().map(|collider| collider.clone().friction(FRICTION));
+        let world = world_of(ground, SbbkDispatcher::default());
         let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
         let body = body.linvel(heading * Vec3::X * self.speed).can_sleep(false);
         let collider = ColliderBuilder::new(rider.shape.clone()).friction(FRICTION);
-        let (body, _) = world.insert(body, collider);
-        let mut rise: f32 = 0.0;
-        for step in 0..self.steps {
-            world.step();
-            if step >= LANDING {
-                rise = rise.max(world.bodies[body].linvel().y);
-            }
-        }
-        let end = world.bodies[body].translation();
+        let (mut step, mut rise): (usize, f32) = (0, 0.0);
+        let look = |body: &RigidBody| {
+            step += 1;
+            rise = if step > LANDING { rise.max(body.linvel().y) } else { rise };
+        };
+        let end = watched(self.steps, world, body, collider, look).translation();
         Ride { path: (end - place).dot(heading * Vec3::X), rise, height: end.y }
     }
 }
 
 /// Compares with the same body on a cuboid: the worst of all starts.
-fn case(row: String, rider: &Rider, rides: &[Ride], controls: &[Ride]) -> Case {
+fn case(name: &str, flags: TriMeshFlags, rider: &Rider, rides: &[Ride], controls: &[Ride]) -> Case {
     // A mesh ball rocks, and loses speed at its facets by chance.
     let [most, most_rise] = match rider.name {
         "mesh ball" => [0.04, 0.15],
@@ -168,10 +164,6 @@ fn case(row: String, rider: &Rider, rides: &[Ride], controls: &[Ride]) -> Case {
     let worst = worst.expect("there is a start");
     let rise = pairs().map(|(ride, control)| ride.rise - control.rise).fold(0.0, f32::max);
     let has_sunk = pairs().any(|(ride, control)| (ride.height - control.height).abs() > 0.02);
-    Case {
-        row,
-        column: rider.name,
-        shown: format!("{worst:.2} {rise:.2}"),
-        is_right: (worst - 1.0).abs() <= most && rise <= most_rise && !has_sunk,
-    }
+    let is_right = (worst - 1.0).abs() <= most && rise <= most_rise && !has_sunk;
+    Case::new(name, flags, rider.name, format!("{worst:.2} {rise:.2}"), is_right)
 }

@@ -5,7 +5,7 @@ use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{FLAGS, row, world};
+use super::{with_flags, world};
 use crate::worlds::after;
 
 /// Half the side of a vessel of single walls.
@@ -50,15 +50,13 @@ fn height(vessel: &Mesh, flags: TriMeshFlags, lid: SharedShape, bottom: f32) -> 
 #[test]
 fn rims_carry_lids() {
     let mut cases = Vec::new();
-    for flags in FLAGS {
-        for (vessel, mesh) in vessels() {
-            for overhang in [0.0, 0.001, 0.005, 0.01, 0.05] {
-                for (column, lid, bottom) in lids(HALF + overhang, flags) {
-                    let height = height(&mesh, flags, lid, bottom);
-                    let row = row(&format!("{vessel}, {} mm", 1000.0 * overhang), flags);
-                    let (shown, is_right) = (format!("{height:.3}"), height.abs() < 0.005);
-                    cases.push(Case { row, column, shown, is_right });
-                }
+    for (flags, (vessel, mesh)) in with_flags(vessels()) {
+        for overhang in [0.0, 0.001, 0.005, 0.01, 0.05] {
+            for (column, lid, bottom) in lids(HALF + overhang, flags) {
+                let height = height(&mesh, flags, lid, bottom);
+                let name = format!("{vessel}, {} mm", 1000.0 * overhang);
+                let (shown, is_right) = (format!("{height:.3}"), height.abs() < 0.005);
+                cases.push(Case::new(name, flags, column, shown, is_right));
             }
         }
     }

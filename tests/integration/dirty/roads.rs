@@ -5,12 +5,11 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::parry::shape::TriMeshFlags;
-use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::rides::{Course, riders};
 use super::table::{Case, judge};
-use crate::worlds::after;
+use crate::worlds::{after, world_of};
 
 /// Side of all chunks, or beams, of a road together.
 const SIZE: f32 = 16.0;
@@ -53,18 +52,16 @@ fn balls_roll_over_a_seam_as_over_a_floor() {
     const RADIUS: f32 = 0.2;
     for speed in [1.0, 3.0] {
         for phase in 0..6 {
-            let mut world = PhysicsWorld::new();
-            world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-            for side in [-4.0, 4.0] {
-                let floor = mesh::floor(8.0, 8).mapped(|v| v + side * Vec3::X).shape();
-                world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor));
-            }
+            let floors = [-4.0, 4.0].map(|side| {
+                let floor = mesh::floor(8.0, 8).mapped(|v| v + side * Vec3::X);
+                ColliderBuilder::new(floor.shape())
+            });
+            let world = world_of(floors, SbbkDispatcher::default());
             let place = Vec3::new(-1.0 - 0.07 * phase as f32, RADIUS + 0.001, 0.17);
             let body = RigidBodyBuilder::dynamic().translation(place).linvel(speed * Vec3::X);
             let body = body.angvel(-speed / RADIUS * Vec3::Z);
-            let (body, _) = world.insert(body, ColliderBuilder::ball(RADIUS));
-            (0..(150.0 / speed) as usize).for_each(|_| world.step());
-            let left = world.bodies[body].linvel().x / speed;
+            let ball = ColliderBuilder::ball(RADIUS);
+            let left = after((150.0 / speed) as usize, world, body, ball).linvel().x / speed;
             assert!((left - 1.0).abs() < 0.03, "{left} of its speed of {speed}, {phase}");
         }
     }
@@ -89,11 +86,7 @@ fn what_rolls_over_tiles_keeps_its_speed() {
             rollers.iter().flat_map(|roller| [1.0, 3.0, 8.0].map(|speed| (roller, speed)))
         {
             let [on_tiles, on_block] = [&tiles, &block].map(|floor| {
-                let mut world = PhysicsWorld::new();
-                world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-                for part in floor {
-                    world.insert(RigidBodyBuilder::fixed(), part.clone());
-                }
+                let world = world_of(floor.iter().cloned(), SbbkDispatcher::default());
                 let place = Vec3::new(0.1, radius + 0.001, 0.1);
                 let body = RigidBodyBuilder::dynamic().translation(place).rotation(lying);
                 let body = body.linvel(speed * Vec3::X).angvel(-speed / radius * Vec3::Z);

@@ -4,13 +4,12 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
-use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{FLAGS, prepared_world, row, world};
+use super::{FLAGS, prepared_world, with_flags, world};
 use crate::support::{Pair, Question, assert_bits, counting_patches, direction, rotation};
-use crate::worlds::after;
+use crate::worlds::{after, settled, world_of};
 
 /// Half the side of a room, and of a body in it.
 const ROOM: f32 = 3.0;
@@ -33,26 +32,21 @@ fn bodies_stay_in_rooms() {
     let settings = [1, 5, 30, 40]
         .into_iter()
         .flat_map(|cells| [false, true].map(|is_prepared| (cells, is_prepared)));
-    for ((cells, is_prepared), flags) in
-        settings.flat_map(|setting| FLAGS.map(|flags| (setting, flags)))
-    {
+    for (flags, (cells, is_prepared)) in with_flags(settings) {
         let room = mesh::cuboid(Vec3::splat(ROOM), cells).shape_with(flags);
         let (mut world, prepared) = prepared_world(&[&room], is_prepared);
         world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(room));
-        let bodies = bodies(flags).map(|(name, shape)| (name, ColliderBuilder::new(shape)));
         let mut at = Vec3::new(-1.8, 0.1, 0.17);
-        let bodies = bodies.map(|(name, collider)| {
+        let (columns, shapes): (Vec<_>, Vec<_>) = bodies(flags).into_iter().unzip();
+        let bodies = shapes.into_iter().map(|shape| {
             at.x += 0.9;
-            (name, world.insert(RigidBodyBuilder::dynamic().translation(at), collider).0)
+            (RigidBodyBuilder::dynamic().translation(at), ColliderBuilder::new(shape))
         });
-        (0..240).for_each(|_| world.step());
         let how = if is_prepared { ", prepared" } else { "" };
-        let name = row(&format!("{} triangles{how}", 12 * cells * cells), flags);
-        for (column, body) in bodies {
-            let height = world.bodies[body].translation().y;
-            let is_right = (height - BODY + ROOM).abs() < 0.05;
-            let shown = format!("{height:.2}");
-            cases.push(Case { row: name.clone(), column, shown, is_right });
+        let name = format!("{} triangles{how}", 12 * cells * cells);
+        for (column, Vec3 { y, .. }) in columns.into_iter().zip(settled(240, world, bodies)) {
+            let is_right = (y - BODY + ROOM).abs() < 0.05;
+            cases.push(Case::new(&name, flags, column, format!("{y:.2}"), is_right));
         }
         drop(prepared);
     }
@@ -67,9 +61,7 @@ fn bodies_stay_in_rooms() {
 fn bodies_meet_furniture_that_pierces_the_floor() {
     let mut cases = Vec::new();
     let sizes = [(1, 1.0), (1, 0.05), (5, 0.01), (5, 1.0), (30, 1.0), (30, 0.05)];
-    for ((cells, sunk), flags) in
-        sizes.into_iter().flat_map(|size| FLAGS.map(|flags| (size, flags)))
-    {
+    for (flags, (cells, sunk)) in with_flags(sizes) {
         let block = mesh::cuboid(Vec3::new(1.0, 0.5 * (1.0 + sunk), 1.0), cells);
         let block = block.mapped(|vertex| vertex + (0.5 * (1.0 - sunk) - ROOM) * Vec3::Y);
         let room = mesh::cuboid(Vec3::splat(ROOM), cells);
@@ -80,15 +72,14 @@ fn bodies_meet_furniture_that_pierces_the_floor() {
                 ("beside", Vec3::new(2.2, floor + 0.02, 0.2), -3.0, [1.0 + BODY, floor]),
                 ("on top", Vec3::new(0.1, top + 0.2, 0.2), 0.0, [0.1, top]),
             ] {
-                let mut world = world(ColliderBuilder::new(room.clone()));
+                let world = world(ColliderBuilder::new(room.clone()));
                 let body = RigidBodyBuilder::dynamic().translation(start).linvel(speed * Vec3::X);
-                let body = world.insert(body, ColliderBuilder::new(shape.clone()).friction(0.1)).0;
-                (0..90).for_each(|_| world.step());
-                let Vec3 { x, y, .. } = world.bodies[body].translation();
+                let collider = ColliderBuilder::new(shape.clone()).friction(0.1);
+                let Vec3 { x, y, .. } = after(90, world, body, collider).translation();
                 let is_right = (y - at[1]).abs() < 0.05 && x > at[0] - 0.05;
+                let name = format!("{what}, {sunk} deep, {cells} cells");
                 let shown = format!("{x:.2} {y:.2}");
-                let row = row(&format!("{what}, {sunk} deep, {cells} cells"), flags);
-                cases.push(Case { row, column, shown, is_right });
+                cases.push(Case::new(name, flags, column, shown, is_right));
             }
         }
     }
@@ -132,9 +123,7 @@ fn fast_bodies_stay_in_rooms_that_face_inwards() {
         ("box", mesh::cuboid(Vec3::splat(0.15), 2)),
     ];
     let kinds = [(1, true), (4, false)];
-    for ((cells, has_towers), flags) in
-        kinds.into_iter().flat_map(|kind| FLAGS.map(|flags| (kind, flags)))
-    {
+    for (flags, (cells, has_towers)) in with_flags(kinds) {
         let block = mesh::cuboid(Vec3::splat(1.0), cells).mapped(|vertex| vertex - ROOM * Vec3::Y);
         let room = mesh::turned_inside_out(mesh::cuboid(Vec3::splat(ROOM), cells));
         let tower = |x: f32| {
@@ -172,9 +161,8 @@ fn bodies_stay_in_low_halls_that_face_inwards() {
     {
         let hall = mesh::cuboid(0.5 * Vec3::new(width, 3.0, width), cells);
         let hall = mesh::turned_inside_out(hall).shape_with(flags);
-        let mut world = world(ColliderBuilder::new(hall));
         let mut random = Rand32::new(5);
-        for i in 0..40 {
+        let bodies = (0..40).map(|i| {
             let mut within = |most: f32| most * (2.0 * random.rand_float() - 1.0);
             let half = 0.4 + within(0.25);
             let place = Vec3::new(within(0.3 * width), 0.2 + within(0.4), within(0.3 * width));
@@ -182,10 +170,10 @@ fn bodies_stay_in_low_halls_that_face_inwards() {
                 if i % 2 == 0 { mesh::cuboid(Vec3::splat(half), 1) } else { mesh::ball(half, 8) };
             let pose = Pose3::from_parts(place, rotation(&mut random));
             let body_of = RigidBodyBuilder::dynamic().pose(pose).linvel(-4.0 * Vec3::Y);
-            world.insert(body_of, ColliderBuilder::new(body.shape_with(flags)));
-        }
-        (0..180).for_each(|_| world.step());
-        let lost = world.bodies.iter().filter(|(_, body)| body.translation().y < -1.5).count();
+            (body_of, ColliderBuilder::new(body.shape_with(flags)))
+        });
+        let ends = settled(180, world(ColliderBuilder::new(hall)), bodies);
+        let lost = ends.iter().filter(|place| place.y < -1.5).count();
         assert_eq!(lost, 0, "of 40 bodies in a hall of {width} of {cells} cells");
     }
 }
@@ -250,8 +238,7 @@ fn lost_in_rocking_room(seed: u64, thickness: f32) -> usize {
     } else {
         room(HALF)
     };
-    let mut world = PhysicsWorld::default();
-    world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+    let mut world = world_of([], SbbkDispatcher::default());
     let walls = ColliderBuilder::new(walls.shape());
     let (room, _) = world.insert(RigidBodyBuilder::kinematic_position_based(), walls);
     let stones: Vec<_> = (0..12)

@@ -6,7 +6,7 @@ use rapier3d::geometry::ColliderBuilder;
 use sbbk_testkit::mesh::{self, Mesh, uneven_box};
 
 use super::table::{Case, judge};
-use super::{FLAGS, row, world};
+use super::{with_flags, world};
 use crate::support::declare_solid;
 use crate::worlds::{after, lowest, on_ground};
 
@@ -56,9 +56,7 @@ fn bodies() -> [(&'static str, Mesh, f32); 4] {
 #[test]
 fn closed_meshes_push_out_what_has_sunk_in() {
     let mut cases = Vec::new();
-    for (flags, (name, solid, [low, high])) in
-        FLAGS.into_iter().flat_map(|flags| solids().into_iter().map(move |solid| (flags, solid)))
-    {
+    for (flags, (name, solid, [low, high])) in with_flags(solids()) {
         let solid = ColliderBuilder::new(solid.shape_with(flags));
         for (column, body, height) in bodies() {
             let dispatcher = SbbkDispatcher::default();
@@ -72,8 +70,7 @@ fn closed_meshes_push_out_what_has_sunk_in() {
             drop(declared);
             let lowest = lowest(&body, end.position());
             let is_right = (low..high).contains(&lowest);
-            let shown = format!("{lowest:.2}");
-            cases.push(Case { row: row(name, flags), column, shown, is_right });
+            cases.push(Case::new(name, flags, column, format!("{lowest:.2}"), is_right));
         }
     }
     judge("lowest point of a body in a solid with its top at 1, after 4 s", &cases, &[]);
@@ -101,9 +98,7 @@ fn vessels() -> Vec<(&'static str, Mesh)> {
 #[test]
 fn vessels_hold_what_lies_in_them() {
     let mut cases = Vec::new();
-    for (flags, (name, vessel)) in
-        FLAGS.into_iter().flat_map(|flags| vessels().into_iter().map(move |it| (flags, it)))
-    {
+    for (flags, (name, vessel)) in with_flags(vessels()) {
         let ground = ColliderBuilder::new(vessel.shape_with(flags));
         for (column, body) in
             [("mesh ball", mesh::ball(0.2, 6)), ("mesh cube", mesh::cuboid(Vec3::splat(0.15), 2))]
@@ -112,8 +107,7 @@ fn vessels_hold_what_lies_in_them() {
             let body = ColliderBuilder::new(body.shape_with(flags));
             let height = after(180, world(ground.clone()), start, body).translation().y;
             let is_right = (-0.9..-0.6).contains(&height);
-            let shown = format!("{height:.2}");
-            cases.push(Case { row: row(name, flags), column, shown, is_right });
+            cases.push(Case::new(name, flags, column, format!("{height:.2}"), is_right));
         }
     }
     judge("height of a body in a vessel of radius 1, after 3 s", &cases, &[]);

@@ -1,8 +1,10 @@
 use std::collections::BTreeSet;
-use std::fmt::Write;
+use std::fmt::{Display, Write};
+
+use rapier3d::parry::shape::TriMeshFlags;
 
 /// End of the name of a row with flags.
-pub(super) const FLAG: &str = " + flag";
+const FLAG: &str = " + flag";
 
 /// Measurement of one scene.
 pub(super) struct Case {
@@ -10,6 +12,20 @@ pub(super) struct Case {
     pub column: &'static str,
     pub shown: String,
     pub is_right: bool,
+}
+
+impl Case {
+    /// Marks the row if meshes have flags.
+    pub(super) fn new(
+        name: impl Display,
+        flags: TriMeshFlags,
+        column: &'static str,
+        shown: impl Display,
+        is_right: bool,
+    ) -> Self {
+        let row = format!("{name}{}", if flags.is_empty() { "" } else { FLAG });
+        Self { row, column, shown: shown.to_string(), is_right }
+    }
 }
 
 /// Prints a table. Panics unless exactly the cases `known` are wrong: rows, and columns with commas

@@ -1,15 +1,14 @@
 use glamx::{Pose3, Vec2, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{FLAGS, row};
+use super::{with_flags, world};
 use crate::support::rotation;
-use crate::worlds::{after, on_ground};
+use crate::worlds::{after, settled};
 
 fn grounds() -> [(&'static str, Mesh); 3] {
     let block = mesh::cuboid(Vec3::new(10.0, 0.5, 10.0), 10).mapped(|at| at - 0.5 * Vec3::Y);
@@ -34,7 +33,6 @@ fn bodies() -> [(&'static str, Mesh, Vec3); 4] {
 /// Drops nine bodies at several angles. Returns how many are below the ground after two seconds.
 fn lost(ground: &Mesh, body: &Mesh, half: Vec3, tilt: f32, flags: TriMeshFlags) -> usize {
     let ground = ColliderBuilder::new(ground.shape_with(flags));
-    let mut world = on_ground(ground, SbbkDispatcher::default());
     let mass = MassProperties::from_cuboid(100.0, half.max(Vec3::splat(0.005)));
     let bodies = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|i: u8| {
         let [row, column] = [i / 3, i % 3].map(f32::from);
@@ -42,24 +40,21 @@ fn lost(ground: &Mesh, body: &Mesh, half: Vec3, tilt: f32, flags: TriMeshFlags) 
             Vec3::new(tilt * (f32::from(i) / 4.0 - 1.0), 0.3 * f32::from(i), tilt * (1.0 - column));
         let at = Vec3::new(2.0 * column - 2.03, 0.02, 2.0 * row - 2.07);
         let collider = ColliderBuilder::new(body.shape_with(flags)).mass_properties(mass);
-        world.insert(RigidBodyBuilder::dynamic().translation(at).rotation(turn), collider).0
+        (RigidBodyBuilder::dynamic().translation(at).rotation(turn), collider)
     });
-    (0..120).for_each(|_| world.step());
-    bodies.iter().filter(|&&body| world.bodies[body].translation().y < -0.02).count()
+    settled(120, world(ground), bodies).iter().filter(|place| place.y < -0.02).count()
 }
 
 /// Would catch thin bodies that rest, sink in by a millimetre, and go on through the ground.
 #[test]
 fn thin_bodies_rest_on_the_ground() {
     let mut cases = Vec::new();
-    for flags in FLAGS {
-        for (ground, ground_mesh) in grounds() {
-            for tilt in [0.0, 0.02, 0.1] {
-                for (column, body, half) in bodies() {
-                    let lost = lost(&ground_mesh, &body, half, tilt, flags);
-                    let row = row(&format!("{ground}, tilted by {tilt}"), flags);
-                    cases.push(Case { row, column, shown: lost.to_string(), is_right: lost == 0 });
-                }
+    for (flags, (ground, ground_mesh)) in with_flags(grounds()) {
+        for tilt in [0.0, 0.02, 0.1] {
+            for (column, body, half) in bodies() {
+                let lost = lost(&ground_mesh, &body, half, tilt, flags);
+                let name = format!("{ground}, tilted by {tilt}");
+                cases.push(Case::new(name, flags, column, lost, lost == 0));
             }
         }
     }
@@ -68,7 +63,6 @@ fn thin_bodies_rest_on_the_ground() {
 
 /// Drops 36 plates or discs in a square from a height, tilted each in its own way. Returns the height of each after four seconds.
 fn dropped(ground: ColliderBuilder, body: &Mesh, height: f32) -> Vec<f32> {
-    let mut world = on_ground(ground, SbbkDispatcher::default());
     let bodies = (0..36).map(|i: u8| {
         let [row, column] = [i / 6, i % 6].map(f32::from);
         let turn = Vec3::new(0.11 * (row - 2.4), 0.3 * f32::from(i), 0.13 * (2.6 - column));
@@ -76,9 +70,7 @@ fn dropped(ground: ColliderBuilder, body: &Mesh, height: f32) -> Vec<f32> {
         let body = ColliderBuilder::new(body.shape());
         (RigidBodyBuilder::dynamic().translation(at).rotation(turn), body)
     });
-    let bodies: Vec<_> = bodies.map(|(body, collider)| world.insert(body, collider).0).collect();
-    (0..240).for_each(|_| world.step());
-    bodies.iter().map(|&body| world.bodies[body].translation().y).collect()
+    settled(240, world(ground), bodies).iter().map(|place| place.y).collect()
 }
 
 /// Plates of 2 cm sink in by more than they are thick. Would catch plates that go through since triangles of a wavy
@@ -115,8 +107,7 @@ fn coins_stay_on_a_box() {
         for drop in [0.05, 0.2] {
             let mut random = Rand32::new(6);
             let lost = (0..40).filter(|_| {
-                let ground = ColliderBuilder::new(floor.shape());
-                let world = on_ground(ground, SbbkDispatcher::default());
+                let world = world(ColliderBuilder::new(floor.shape()));
                 let place = Vec3::new(0.3, drop + radius, 0.2);
                 let pose = Pose3::from_parts(place, rotation(&mut random));
                 let coin = ColliderBuilder::cylinder(half, radius);

@@ -10,7 +10,7 @@ use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::random::rotation;
 
 use super::table::{Case, judge};
-use super::{FLAGS, row};
+use super::with_flags;
 use crate::support::{Question, shape_with};
 
 const POSES: usize = 200;
@@ -85,15 +85,13 @@ fn sheets_that_cross_along_grid_lines_have_contacts() {
         ("any", anyhow),
     ];
     let mut cases = Vec::new();
-    for (flags, (name, floor)) in
-        FLAGS.into_iter().flat_map(|flags| floors.iter().map(move |f| (flags, f)))
-    {
+    for (flags, (name, floor)) in with_flags(&floors) {
         let [floor, sheet] = [floor, &triangle()].map(|mesh| shape_with(mesh, flags));
         for (column, pose) in poses {
             let [lost, crossing] = lost(&floor, &sheet, pose);
             assert!(crossing > POSES / 4, "{crossing} of {name}, {column} cross");
             let shown = format!("{lost} of {}", 2 * crossing);
-            cases.push(Case { row: row(name, flags), column, shown, is_right: lost == 0 });
+            cases.push(Case::new(name, flags, column, shown, lost == 0));
         }
     }
     judge("an upright triangle crosses a floor: queries without contacts", &cases, &[]);
