@@ -1,11 +1,14 @@
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
-use rapier3d::parry::shape::{PackedFeatureId, TriMesh};
+use rapier3d::parry::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
+};
+use rapier3d::parry::shape::TriMesh;
 use sbbk_testkit::mesh;
 
 use crate::support::{
@@ -18,10 +21,12 @@ use crate::support::{
 struct Marker(u32);
 
 type MarkedPair = Pair<Marker, Marker>;
+type MarkedManifold = ContactManifold<Marker, Marker>;
 
 impl MarkedPair {
-    /// Gives each manifold and each point another mark; mark 0 is left for new ones.
-    fn mark(&mut self) {
+    /// Gives each manifold and each point another mark; mark 0 is left for new ones. Returns what is
+    /// marked.
+    fn mark(&mut self) -> Vec<MarkedManifold> {
         let mut next = 1..;
         for manifold in &mut self.manifolds {
             manifold.data = Marker(next.next().unwrap());
@@ -29,6 +34,24 @@ impl MarkedPair {
                 point.data = Marker(next.next().unwrap());
             }
         }
+        self.manifolds.clone()
+    }
+
+    /// Panics unless manifolds have their marks by their triangles, and points by their features.
+    /// Returns the number of known and of new points.
+    fn check_marks(&self, before: &[MarkedManifold]) -> [usize; 2] {
+        let fids = |point: &TrackedContact<Marker>| [point.fid1, point.fid2];
+        let (before, mut counts) = (by_triangles(before), [0; 2]);
+        for manifold in &self.manifolds {
+            let old = before.get(&triangles(manifold));
+            assert_eq!(manifold.data, old.map_or(Marker(0), |old| old.data));
+            for point in &manifold.points {
+                let known = old.and_then(|old| old.points.iter().find(|p| fids(p) == fids(point)));
+                assert_eq!(point.data, known.map_or(Marker(0), |point| point.data));
+                counts[usize::from(known.is_none())] += 1;
+            }
+        }
+        counts
     }
 }
 
@@ -96,29 +119,12 @@ fn with_a_foreign_workspace_manifolds_keep_their_data() {
     let [one, two] = rings();
     let query = Question::new(&one, &two, touching(&mut Rand32::new(5), [&one, &two], 0.1));
     let mut pair = MarkedPair::default();
-    pair.ask(&DefaultQueryDispatcher, &query).mark();
-    let before = pair.manifolds.clone();
-    let before = by_triangles(&before);
+    let before = pair.ask(&DefaultQueryDispatcher, &query).mark();
     pair.ask(&every(), &query);
     assert_same(&pair.manifolds, &query.fresh(&every()), 0.0);
-    let mut kept_points = 0;
-    for manifold in &pair.manifolds {
-        let old = before[&triangles(manifold)];
-        assert_eq!(manifold.data, old.data);
-        for point in &manifold.points {
-            let is_same = |p: &&_| fids(*p) == fids(point);
-            let known = old.points.iter().find(is_same);
-            assert_eq!(point.data, known.map_or(Marker(0), |point| point.data));
-            kept_points += usize::from(known.is_some());
-        }
-    }
-    assert!(kept_points > 0, "no point has the feature ids that stock gives");
-}
-
-type FeatureIds = [PackedFeatureId; 2];
-
-fn fids<C>(point: &rapier3d::parry::query::TrackedContact<C>) -> FeatureIds {
-    [point.fid1, point.fid2]
+    let [kept, _] = pair.check_marks(&before);
+    assert!(kept > 0, "no point has the feature ids that stock gives");
+    assert!(pair.manifolds.iter().all(|manifold| manifold.data != Marker(0)), "stock has it");
 }
 
 /// Would catch impulses lost or given to another point while bodies move.
@@ -132,20 +138,13 @@ fn points_keep_their_data_by_their_features() {
     pair.ask(&dispatcher, &query);
     let [mut kept, mut new] = [0, 0];
     for _ in 0..300 {
-        pair.mark();
-        let before = pair.manifolds.clone();
-        let before = by_triangles(&before);
+        let before = pair.mark();
         query.pose = nudge(&mut random, 0.003) * query.pose;
-        for manifold in &pair.ask(&dispatcher, &query).manifolds {
-            let old = before.get(&triangles(manifold));
-            assert_eq!(manifold.data, old.map_or(Marker(0), |old| old.data));
-            for point in &manifold.points {
-                let known = old.and_then(|old| old.points.iter().find(|p| fids(*p) == fids(point)));
-                assert_eq!(point.data, known.map_or(Marker(0), |point| point.data));
-                *(if known.is_some() { &mut kept } else { &mut new }) += 1;
-            }
-            let distinct: std::collections::HashSet<_> =
-                manifold.points.iter().map(|p| fids(p).map(|fid| fid.0)).collect();
+        let counts = pair.ask(&dispatcher, &query).check_marks(&before);
+        [kept, new] = [kept + counts[0], new + counts[1]];
+        for manifold in &pair.manifolds {
+            let distinct: HashSet<_> =
+                manifold.points.iter().map(|p| [p.fid1.0, p.fid2.0]).collect();
             assert_eq!(distinct.len(), manifold.points.len(), "two points of the same features");
         }
     }
