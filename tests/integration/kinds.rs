@@ -7,6 +7,7 @@ use oorandom::Rand32;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use sbbk_testkit::mesh;
+use sbbk_testkit::scene::random::first_touch;
 
 use crate::compound::compounds;
 use crate::convex::shapes::{floor, shapes};
@@ -44,31 +45,20 @@ impl Kind {
         let mut approach = || {
             let (turn, away) = (rotation(random), direction(random));
             let at = |way: Real| Pose::from_parts(way * away, turn);
-            let meet = |way| {
+            let meets = |way| {
                 !self.question(at(way)).within(gap.max(1e-3)).fresh(&per_triangle()).is_empty()
             };
-            let steps = 64;
-            let way = |i: u32| START * (1.0 - i as Real / steps as Real);
-            let first = (0..steps).find(|&i| meet(way(i))).filter(|&i| i > 0)?;
-            let [mut inside, mut outside] = [way(first), way(first - 1)];
-            for _ in 0..16 {
-                let middle = 0.5 * (inside + outside);
-                *(if meet(middle) { &mut inside } else { &mut outside }) = middle;
-            }
-            Some(at(inside + gap.min(0.0)))
+            let inside = first_touch(START, START / 64.0 / 65536.0, meets)?;
+            (inside < START).then(|| at(inside + gap.min(0.0)))
         };
         (0..100).find_map(|_| approach()).expect("most lines meet the other shape")
     }
 }
 
-fn head(flags: TriMeshFlags) -> SharedShape {
-    mesh::monkey_head_with(6).shape_with(flags)
-}
-
 /// Pairs of meshes that differ in size, detail, place of the origin, or surface kind. The last one
 /// is too large for a tree that was not prepared.
 pub fn mesh_pairs() -> Vec<Kind> {
-    let plain = head(TriMeshFlags::empty());
+    let plain = mesh::monkey_head_with(6).shape();
     let [ring, ball, fine, large] = [
         mesh::torus(3.0, 0.3, 40, 8),
         mesh::ball(0.5, 5),
@@ -92,9 +82,9 @@ pub fn mesh_pairs() -> Vec<Kind> {
 pub fn kinds() -> &'static [Kind] {
     static KINDS: OnceLock<Vec<Kind>> = OnceLock::new();
     KINDS.get_or_init(|| {
-        let plain = head(TriMeshFlags::empty());
-        let flagged = head(TriMeshFlags::FIX_INTERNAL_EDGES);
-        let soft = head(TriMeshFlags::DEFORMABLE);
+        let flags = [TriMeshFlags::FIX_INTERNAL_EDGES, TriMeshFlags::DEFORMABLE];
+        let [flagged, soft] = flags.map(|flags| mesh::monkey_head_with(6).shape_with(flags));
+        let plain = mesh::monkey_head_with(6).shape();
         let field = SharedShape::new(rolling(6.0, 20, 0.5));
         let ball = mesh::ball(0.7, 5).shape();
         let line = (0..9).map(|i| Vec3::new(0.2 * i as Real, 0.1 * (i % 2) as Real, 0.0)).collect();

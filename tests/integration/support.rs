@@ -16,6 +16,7 @@ use rapier3d::parry::query::{
 use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh::Mesh;
 pub use sbbk_testkit::mesh::turned_inside_out;
+use sbbk_testkit::scene::random::first_touch;
 pub use sbbk_testkit::scene::random::{direction, rotation};
 
 /// Manifolds without data, as hosts other than Rapier may have them.
@@ -320,15 +321,7 @@ fn approach(
         let answer = DefaultQueryDispatcher.intersection_test(&at(distance), shapes[0], shapes[1]);
         answer.unwrap().intersecting
     };
-    let step = farthest / 64.0;
-    let mut inside =
-        (0..64).map(|i| farthest - step * i as Real).find(|&distance| meet(distance))?;
-    let mut outside = inside + step;
-    while outside - inside > 1e-5 * farthest {
-        let middle = 0.5 * (inside + outside);
-        *(if meet(middle) { &mut inside } else { &mut outside }) = middle;
-    }
-    Some(at(inside - depth))
+    Some(at(first_touch(farthest, 1e-5 * farthest, meet)? - depth))
 }
 
 /// Radius of the ball about the origin that holds a mesh.

@@ -8,9 +8,6 @@ use rapier3d::geometry::TriMesh;
 
 /// Steps of one motion, after its first query: they slide and turn.
 pub(super) const STEP_COUNT: usize = 16;
-/// Steps of the coarse search for the first touch. Higher: slower studies; lower: thin parts pass
-/// through each other.
-const COARSE_STEPS: usize = 64;
 /// Approaches tried until one touches.
 const TRIES: usize = 100;
 
@@ -91,25 +88,15 @@ impl Approach {
         dispatcher: &SharedDispatcher,
         [shape1, shape2]: [&SharedShape; 2],
     ) -> Option<Self> {
-        let mut way = Self { rotation, direction, end, touch: 0.0 };
+        let way = Self { rotation, direction, end, touch: 0.0 };
         let opposite = rotation.inverse() * -direction;
         let farthest = reach(shape1, end, direction) + reach(shape2, Vec3::ZERO, opposite);
-        let step = farthest / COARSE_STEPS as Real;
-        let touches = |distance: &Real| {
-            let answer = dispatcher.intersection_test(&way.at(*distance), &**shape1, &**shape2);
+        let meet = |distance| {
+            let answer = dispatcher.intersection_test(&way.at(distance), &**shape1, &**shape2);
             answer.is_ok_and(|answer| answer.intersecting)
         };
-        let mut distances = (0..COARSE_STEPS).map(|i| farthest - step * i as Real);
-        let mut inside = distances.find(touches)?;
-        let mut outside = inside + step;
-        loop {
-            let middle = 0.5 * (inside + outside);
-            if middle <= inside || middle >= outside {
-                way.touch = inside;
-                return Some(way);
-            }
-            *(if touches(&middle) { &mut inside } else { &mut outside }) = middle;
-        }
+        let touch = random::first_touch(farthest, 0.0, meet)?;
+        Some(Self { touch, ..way })
     }
 
     fn at(&self, distance: Real) -> Pose3 {
