@@ -1,13 +1,11 @@
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::ColliderBuilder;
 use rapier3d::parry::shape::TriMesh;
 use sbbk_testkit::mesh::{self, Mesh};
 
+use super::end;
 use crate::support::{Pair, Question, assert_same, every, rotation, shape, touching};
-use crate::worlds::{after, on_ground};
 
 /// The mesh with all its triangles a number of times.
 fn repeated(mesh: &Mesh, times: usize) -> Mesh {
@@ -58,8 +56,7 @@ fn fast_bodies_stay_above_two_sided_floors() {
             let start = Vec3::new(0.3, 0.3 + 0.001 * i as f32, 0.2);
             let pose = Pose3::from_parts(start, rotation(&mut random));
             let moving = RigidBodyBuilder::dynamic().pose(pose).linvel(-6.0 * Vec3::Y);
-            let world = on_ground(ColliderBuilder::new(floor.clone()), SbbkDispatcher::default());
-            let end = after(60, world, moving, ColliderBuilder::new(ball.clone())).translation();
+            let end = end(60, &floor, moving, &ball);
             assert!(end.y > 0.0, "the ball from {start} is at {end}");
         }
     }

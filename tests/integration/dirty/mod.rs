@@ -4,12 +4,14 @@
 //! when a listed case passes. To see the tables:
 //! `cargo test -p sbbk --test integration dirty -- --nocapture`.
 
+use glamx::Vec3;
 use rapier_integration::{PreparedTree, SbbkDispatcher};
+use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
 
-use crate::worlds::{on_ground, world_of};
+use crate::worlds::{after, on_ground, world_of};
 
 /// Meshes with triangles that are there several times.
 mod doubles;
@@ -52,6 +54,12 @@ const FLAGS: [TriMeshFlags; 2] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTER
 /// A world with a fixed ground and the dispatcher of a user.
 fn world(ground: ColliderBuilder) -> PhysicsWorld {
     on_ground(ground, SbbkDispatcher::default())
+}
+
+/// Where a body is some steps after its start in a world with a fixed ground.
+fn end(steps: usize, ground: &SharedShape, start: RigidBodyBuilder, body: &SharedShape) -> Vec3 {
+    let [ground, body] = [ground, body].map(|shape| ColliderBuilder::new(shape.clone()));
+    after(steps, world(ground), start, body).translation()
 }
 
 /// An empty world with the dispatcher of a user, and its registrations of shapes.

@@ -7,7 +7,7 @@ use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{FLAGS, prepared_world, with_flags, world};
+use super::{FLAGS, end, prepared_world, with_flags, world};
 use crate::support::{Pair, Question, assert_bits, counting_patches, direction, rotation};
 use crate::worlds::{after, settled, world_of};
 
@@ -141,9 +141,7 @@ fn fast_bodies_stay_in_rooms_that_face_inwards() {
                     let start = start + 0.3 * direction(&mut random).with_y(0.0);
                     let pose = Pose3::from_parts(start, rotation(&mut random));
                     let body_of = RigidBodyBuilder::dynamic().pose(pose).linvel(-6.0 * Vec3::Y);
-                    let room = world(ColliderBuilder::new(room.clone()));
-                    let end = after(60, room, body_of, ColliderBuilder::new(body.clone()));
-                    let end = end.translation();
+                    let end = end(60, &room, body_of, &body);
                     let is_in_block = end.y < 1.0 - ROOM && end.x.abs().max(end.z.abs()) < 1.0;
                     let is_in = end.abs().max_element() < ROOM && !is_in_block;
                     assert!(is_in, "{name} {i} in a room of {cells} is at {end}");
@@ -187,13 +185,12 @@ fn bodies_just_behind_walls_that_face_inwards_come_back() {
         let room = mesh::cuboid(Vec3::splat(ROOM), cells);
         let room = mesh::turned_inside_out(room).shape_with(flags);
         for body in [mesh::cuboid(Vec3::splat(HALF), 2), mesh::ball(HALF, 6)] {
+            let body = body.shape_with(flags);
             for behind in [0.05, 0.2, 0.35, 0.45] {
                 let height = speed / 60.0 - behind * HALF;
                 let start = Vec3::new(0.37, height - ROOM, 0.21);
                 let start = RigidBodyBuilder::dynamic().translation(start).linvel(-speed * Vec3::Y);
-                let room = world(ColliderBuilder::new(room.clone()));
-                let body = ColliderBuilder::new(body.shape_with(flags));
-                let end = after(60, room, start, body).translation();
+                let end = end(60, &room, start, &body);
                 assert!(end.y > -ROOM, "{behind} behind a floor of {cells}: {end}");
             }
         }
@@ -216,9 +213,7 @@ fn bodies_stay_in_rooms_with_turned_triangles() {
                 let start = cell + beside + (BODY + 0.2) * Vec3::Y;
                 let turn = Quat::from_rotation_y(3.0 * random.rand_float());
                 let pose = Pose3::from_parts(start, turn);
-                let body = RigidBodyBuilder::dynamic().pose(pose);
-                let room = world(ColliderBuilder::new(room.clone()));
-                let end = after(120, room, body, ColliderBuilder::new(shape.clone())).translation();
+                let end = end(120, &room, RigidBodyBuilder::dynamic().pose(pose), &shape);
                 let height = end.y - BODY + ROOM;
                 assert!(height.abs() < 0.05, "{name} in a room of {cells}: {height}");
             }
@@ -283,11 +278,9 @@ fn stones_stay_in_a_rocking_room() {
 fn bodies_stay_in_long_tubes() {
     const RADIUS: f32 = 1.0;
     for half_width in [2.0, 5.0, 20.0] {
-        let tube = mesh::tube(RADIUS, half_width, 48);
+        let (tube, ball) = (mesh::tube(RADIUS, half_width, 48), mesh::ball(BODY, 12).shape());
         for tube in [mesh::turned_inside_out(tube.clone()), tube] {
-            let world = world(ColliderBuilder::new(tube.shape()));
-            let ball = ColliderBuilder::new(mesh::ball(BODY, 12).shape());
-            let height = after(240, world, RigidBodyBuilder::dynamic(), ball).translation().y;
+            let height = end(240, &tube.shape(), RigidBodyBuilder::dynamic(), &ball).y;
             assert!((height - BODY + RADIUS).abs() < 0.05, "{height} in a tube of {half_width}");
         }
     }

@@ -6,7 +6,7 @@ use rapier3d::geometry::ColliderBuilder;
 use sbbk_testkit::mesh::{self, Mesh, uneven_box};
 
 use super::table::{Case, judge};
-use super::{with_flags, world};
+use super::{end, with_flags, world};
 use crate::support::declare_solid;
 use crate::worlds::{after, lowest, on_ground};
 
@@ -99,13 +99,12 @@ fn vessels() -> Vec<(&'static str, Mesh)> {
 fn vessels_hold_what_lies_in_them() {
     let mut cases = Vec::new();
     for (flags, (name, vessel)) in with_flags(vessels()) {
-        let ground = ColliderBuilder::new(vessel.shape_with(flags));
+        let ground = vessel.shape_with(flags);
         for (column, body) in
             [("mesh ball", mesh::ball(0.2, 6)), ("mesh cube", mesh::cuboid(Vec3::splat(0.15), 2))]
         {
             let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.05, -0.6, 0.02));
-            let body = ColliderBuilder::new(body.shape_with(flags));
-            let height = after(180, world(ground.clone()), start, body).translation().y;
+            let height = end(180, &ground, start, &body.shape_with(flags)).y;
             let is_right = (-0.9..-0.6).contains(&height);
             cases.push(Case::new(name, flags, column, format!("{height:.2}"), is_right));
         }

@@ -1,14 +1,14 @@
 use glamx::{Pose3, Vec2, Vec3};
 use oorandom::Rand32;
 use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
-use rapier3d::geometry::ColliderBuilder;
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{with_flags, world};
+use super::{end, with_flags, world};
 use crate::support::rotation;
-use crate::worlds::{after, settled};
+use crate::worlds::settled;
 
 fn grounds() -> [(&'static str, Mesh); 3] {
     let block = mesh::cuboid(Vec3::new(10.0, 0.5, 10.0), 10).mapped(|at| at - 0.5 * Vec3::Y);
@@ -103,16 +103,15 @@ fn thin_discs_come_to_rest_on_a_cuboid() {
 #[test]
 fn coins_stay_on_a_box() {
     let floor = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1).mapped(|at| at - 0.5 * Vec3::Y);
+    let floor = floor.shape();
     for (radius, half) in [(0.015, 0.002), (0.03, 0.004), (0.1, 0.01)] {
+        let coin = SharedShape::cylinder(half, radius);
         for drop in [0.05, 0.2] {
             let mut random = Rand32::new(6);
             let lost = (0..40).filter(|_| {
-                let world = world(ColliderBuilder::new(floor.shape()));
                 let place = Vec3::new(0.3, drop + radius, 0.2);
                 let pose = Pose3::from_parts(place, rotation(&mut random));
-                let coin = ColliderBuilder::cylinder(half, radius);
-                let end = after(90, world, RigidBodyBuilder::dynamic().pose(pose), coin);
-                end.translation().y < -half
+                end(90, &floor, RigidBodyBuilder::dynamic().pose(pose), &coin).y < -half
             });
             assert_eq!(lost.count(), 0, "of 40 coins of {radius} from {drop}");
         }
