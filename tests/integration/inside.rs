@@ -18,10 +18,6 @@ use crate::worlds::{on_ground, watched};
 
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
 
-fn slab(cells: u32) -> Mesh {
-    mesh::cuboid(HALF, cells)
-}
-
 fn ask(query: &Question) -> Vec<Manifold> {
     query.fresh(&SbbkDispatcher::default())
 }
@@ -34,7 +30,7 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
         [mesh::cuboid(Vec3::splat(0.2), 2), mesh::monkey_head_with(6).centred().scaled_to(0.4)];
     for (cells, body) in [1, 9].into_iter().flat_map(|cells| bodies.iter().map(move |b| (cells, b)))
     {
-        let (slab, body) = (shape(&slab(cells)), shape(body));
+        let (slab, body) = (shape(&mesh::cuboid(HALF, cells)), shape(body));
         for detail in [ContactDetail::Every, ContactDetail::Patches] {
             let dispatcher = with(|config| config.detail = detail);
             let _solid = declare_solid(&dispatcher, &slab);
@@ -72,12 +68,12 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
 #[test]
 fn bodies_in_no_solid_are_not_pushed_out() {
     let body = shape(&mesh::cuboid(Vec3::splat(0.2), 1));
-    let hollow = [slab(3), turned_inside_out(mesh::cuboid(0.85 * HALF, 3))];
+    let hollow = [mesh::cuboid(HALF, 3), turned_inside_out(mesh::cuboid(0.85 * HALF, 3))];
     let hollow = shape(&Mesh::merged("hollow", &hollow));
-    let inverted = shape(&turned_inside_out(slab(2)));
+    let inverted = shape(&turned_inside_out(mesh::cuboid(HALF, 2)));
     let bowl = shape(&mesh::terrain(4.0, 10, 2.0));
-    let large = shape(&slab(40));
-    let soft = shape_with(&slab(2), TriMeshFlags::DEFORMABLE);
+    let large = shape(&mesh::cuboid(HALF, 40));
+    let soft = shape_with(&mesh::cuboid(HALF, 2), TriMeshFlags::DEFORMABLE);
     for mesh in [&hollow, &inverted, &bowl, &large, &soft] {
         let mut random = Rand32::new(30);
         for _ in 0..30 {
@@ -101,7 +97,7 @@ fn bodies_in_no_solid_are_not_pushed_out() {
 /// looks ahead. Would catch a body remembered as inside or outside.
 #[test]
 fn push_out_does_not_depend_on_earlier_poses() {
-    let slab = shape(&slab(4));
+    let slab = shape(&mesh::cuboid(HALF, 4));
     let kept = counting();
     let unaware = every();
     let _solids = [&kept, &unaware].map(|dispatcher| declare_solid(dispatcher, &slab));

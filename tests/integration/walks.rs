@@ -18,10 +18,6 @@ fn large(flags: TriMeshFlags) -> SharedShape {
     mesh::torus(1.4, 0.6, 100, 48).shape_with(flags)
 }
 
-fn head(flags: TriMeshFlags) -> SharedShape {
-    mesh::monkey_head().shape_with(flags)
-}
-
 fn as_mesh(shape: &SharedShape) -> &TriMesh {
     shape.as_trimesh().expect("the shape is a mesh")
 }
@@ -33,7 +29,7 @@ fn contacts_without_trees_are_those_with_trees() {
     let flags = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
     let mut count = 0;
     for (flags, set) in flags.into_iter().flat_map(|flags| SETS.map(|set| (flags, set))) {
-        let (ring, head) = (large(flags), head(flags));
+        let (ring, head) = (large(flags), mesh::monkey_head().shape_with(flags));
         let [walking, prepared] = [(); 2].map(|()| having(set));
         let _trees = [&ring, &head].map(|shape| prepared.prepare_shape(shape).unwrap());
         let mut random = Rand32::new(1);
@@ -84,7 +80,7 @@ fn descents_in_a_room_end_at_its_walls() {
 fn a_registered_shape_is_known_until_it_is_let_go() {
     let dispatcher = per_triangle();
     let mut ring = large(TriMeshFlags::empty());
-    let head = head(TriMeshFlags::empty());
+    let head = mesh::monkey_head().shape();
     let pose = touching(&mut Rand32::new(3), [as_mesh(&ring), as_mesh(&head)], 0.05);
     let ask = |ring: &SharedShape| {
         let query = Question::new(as_mesh(ring), as_mesh(&head), pose);
@@ -155,7 +151,7 @@ fn meshes_that_land_together_are_not_all_built_at_once() {
 /// Would catch a search over Parry's hierarchies that ends too soon or in the wrong frame.
 #[test]
 fn queries_without_trees_are_those_with_trees() {
-    let (ring, head) = (large(TriMeshFlags::empty()), head(TriMeshFlags::empty()));
+    let (ring, head) = (large(TriMeshFlags::empty()), mesh::monkey_head().shape());
     let (walking, prepared) = (every(), every());
     let _trees = [&ring, &head].map(|shape| prepared.prepare_shape(shape).unwrap());
     let mut random = Rand32::new(6);
