@@ -6,10 +6,11 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{Cuboid, SharedShape};
+use sbbk_testkit::judge::Errors;
 use sbbk_testkit::mesh::{self, Mesh, Thread};
 
 use crate::support::{Question, SETS, distance, having, per_triangle, shape, touching};
-use crate::truth::Tally;
+use crate::truth::{check_all_right, errors_of};
 
 /// Sizes of meshes and prediction distances at which contacts must be right.
 const SIZES: [Real; 3] = [0.1, 2.0, 40.0];
@@ -22,16 +23,16 @@ const DEPTHS: [Real; 4] = [-0.0005, 0.0005, 0.01, 0.2];
 fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
     let dispatcher = per_triangle();
     let mut random = Rand32::new(seed);
-    let mut tally = Tally::default();
+    let mut errors = Errors::default();
     for size in SIZES {
         let [one, two] = meshes.map(|mesh| shape(&mesh.clone().scaled_to(size)));
         for (prediction, depth) in PREDICTIONS.into_iter().flat_map(|p| DEPTHS.map(|d| (p, d))) {
             let pos12 = touching(&mut random, [&one, &two], depth * size);
             let query = Question::new(&one, &two, pos12).within(prediction);
-            tally.add(&query, &query.fresh(&dispatcher));
+            errors += errors_of(&query, &query.fresh(&dispatcher));
         }
     }
-    tally.check_all_right(least_contacts);
+    check_all_right(errors, least_contacts);
 }
 
 /// Would catch contacts missed, invented, or with wrong depths, as stock has them at small triangles. Would
@@ -50,7 +51,7 @@ fn contacts_are_those_of_brute_force_at_every_size() {
 #[test]
 fn aligned_boxes_touch_as_the_truth_says() {
     let dispatcher = per_triangle();
-    let mut tally = Tally::default();
+    let mut errors = Errors::default();
     for size in SIZES {
         let cube = shape(&mesh::cuboid(Vector::splat(0.5 * size), 4));
         for gap in [-0.1, -0.0005, 0.0, 0.0005, 0.0009, 0.015] {
@@ -59,12 +60,12 @@ fn aligned_boxes_touch_as_the_truth_says() {
                 let query = Question::new(&cube, &cube, Pose::translation(x, size + gap, z));
                 for prediction in PREDICTIONS {
                     let query = query.within(prediction);
-                    tally.add(&query, &query.fresh(&dispatcher));
+                    errors += errors_of(&query, &query.fresh(&dispatcher));
                 }
             }
         }
     }
-    tally.check_all_right(10_000);
+    check_all_right(errors, 10_000);
 }
 
 /// Would catch f32 coordinates that lose contacts of bodies or vertices far from an origin.
@@ -72,7 +73,7 @@ fn aligned_boxes_touch_as_the_truth_says() {
 fn distant_meshes_touch_as_the_truth_says() {
     let dispatcher = per_triangle();
     let mut random = Rand32::new(6);
-    let mut tally = Tally::default();
+    let mut errors = Errors::default();
     let head = mesh::monkey_head_with(7);
     let near = shape(&head);
     for offset in [10.0, 100.0, 1000.0] {
@@ -82,12 +83,12 @@ fn distant_meshes_touch_as_the_truth_says() {
             let pos12 =
                 touching(&mut random, [&near, &near], depth) * Pose::from_translation(-shift);
             let query = Question::new(&near, &away, pos12);
-            tally.add(&query, &query.fresh(&dispatcher));
+            errors += errors_of(&query, &query.fresh(&dispatcher));
             let query = query.flipped(true);
-            tally.add(&query, &query.fresh(&dispatcher));
+            errors += errors_of(&query, &query.fresh(&dispatcher));
         }
     }
-    tally.check_all_right(200);
+    check_all_right(errors, 200);
 }
 
 /// A corner of a box above the middle of a triangle. Would catch features of the two shapes that are

@@ -1,8 +1,9 @@
 use rapier3d::pipeline::PhysicsWorld;
+use sbbk_testkit::judge::Errors;
 use sbbk_testkit::scene::{HelicopterBallDrop, MonkeyPile, Scene};
 
 use crate::support::{Question, per_triangle};
-use crate::truth::Tally;
+use crate::truth::{check_all_right, errors_of};
 
 /// The pairs of meshes that the broad phase has proposed, at their present poses.
 fn mesh_pairs(world: &PhysicsWorld) -> impl Iterator<Item = Question<'_>> {
@@ -30,15 +31,15 @@ fn contacts_in_stocks_scenes_are_the_truths() {
     for (contact_recycling, (scene, looks)) in runs {
         let mut world = scene.build().world;
         world.integration_parameters.contact_recycling = contact_recycling;
-        let mut tally = Tally::default();
+        let mut errors = Errors::default();
         for step in 0..=looks[3] {
             if looks.contains(&step) {
                 for query in mesh_pairs(&world).step_by(3) {
-                    tally.add(&query, &query.fresh(&dispatcher));
+                    errors += errors_of(&query, &query.fresh(&dispatcher));
                 }
             }
             world.step();
         }
-        tally.check_all_right(200);
+        check_all_right(errors, 200);
     }
 }

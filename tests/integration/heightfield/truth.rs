@@ -4,6 +4,7 @@ use rapier_integration::{ContactDetail, SurfaceKind};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::{HeightField, TriMeshFlags, Triangle};
+use sbbk_testkit::judge::Errors;
 use sbbk_testkit::mesh;
 
 use super::terrain::{Terrain, heights, place, terrains};
@@ -11,12 +12,12 @@ use crate::soft_pairs::question::assert_same_set;
 use crate::support::{
     Manifold, Question, distance, per_triangle, shape, shape_with, triangles, with,
 };
-use crate::truth::Tally;
+use crate::truth::{check_all_right, errors_of};
 
 /// Judges the answer to a question with a field by the terrain as a mesh.
-fn add(tally: &mut Tally, terrain: &Terrain, question: Question) {
+fn errors_on(terrain: &Terrain, question: Question) -> Errors {
     let found = terrain.renumbered(&question, &question.fresh(&per_triangle()));
-    tally.add(&terrain.as_mesh(&question), &found);
+    errors_of(&terrain.as_mesh(&question), &found)
 }
 
 /// Would catch cells cut off too early, triangles mixed up, filled holes, the wrong frame, and
@@ -27,16 +28,16 @@ fn contacts_are_those_of_brute_force() {
     let meshes = [mesh::monkey_head_with(6), mesh::ball(0.7, 6), mesh::cuboid(Vec3::splat(0.6), 1)];
     let meshes = meshes.map(|mesh| shape(&mesh));
     for (index, terrain) in terrains().iter().enumerate() {
-        let mut tally = Tally::default();
+        let mut errors = Errors::default();
         for i in 0..36 {
             let mesh = &meshes[i % 3];
             let pose = place(&mut random, terrain, mesh, 0.03);
             let prediction = [0.02, 0.002, 0.1, 0.02][i % 4];
             let question = Question::new(&terrain.field, mesh, pose).within(prediction);
-            add(&mut tally, terrain, question.flipped(i % 2 == 1));
+            errors += errors_on(terrain, question.flipped(i % 2 == 1));
         }
         assert!(!terrain.ids.is_empty(), "{index}");
-        tally.check_all_right(300);
+        check_all_right(errors, 300);
     }
 }
 
@@ -46,16 +47,16 @@ fn lattice_contacts_are_those_of_brute_force() {
     let mut random = Rand32::new(3);
     let terrain = Terrain::lattice(&mut random);
     let cuboid = shape(&mesh::cuboid(Vec3::splat(0.5), 2));
-    let mut tally = Tally::default();
+    let mut errors = Errors::default();
     for i in 0..60 {
         let mut coordinate =
             |range: u32| (random.rand_range(0..range) as Real - 0.5 * range as Real) * 0.25;
         let at = Vec3::new(coordinate(30), coordinate(4) + 0.75, coordinate(20));
         let turn = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2 * (i % 4) as Real);
         let question = Question::new(&terrain.field, &cuboid, Pose::from_parts(at, turn));
-        add(&mut tally, &terrain, question.within(0.021).flipped(i % 2 == 1));
+        errors += errors_on(&terrain, question.within(0.021).flipped(i % 2 == 1));
     }
-    tally.check_all_right(1000);
+    check_all_right(errors, 1000);
 }
 
 /// Would catch any difference, up to the order, between a terrain as a field and as a mesh.
@@ -161,13 +162,13 @@ fn non_finite_heights_make_holes() {
         });
         let terrain = Terrain::new(HeightField::new(heights, Vec3::new(4.0, 1.0, 4.0)));
         assert!(terrain.ids.len() < 300);
-        let mut tally = Tally::default();
+        let mut errors = Errors::default();
         for i in 0..20 {
             let [x, z] = [(); 2].map(|()| 3.0 * random.rand_float() - 1.5);
             let pose = Pose::translation(x, 0.8, z);
             let question = Question::new(&terrain.field, &ball, pose);
-            add(&mut tally, &terrain, question.flipped(i % 2 == 1));
+            errors += errors_on(&terrain, question.flipped(i % 2 == 1));
         }
-        tally.check_all_right(50);
+        check_all_right(errors, 50);
     }
 }

@@ -2,9 +2,8 @@
 
 mod sequence;
 mod statistics;
-mod truth;
 
+pub use sbbk_testkit::judge::{Errors, Truth};
 pub use sbbk_testkit::world::solver_points;
 pub use sequence::Sequence;
-pub use statistics::{Summary, geometric_mean};
-pub use truth::{Errors, Truth, sample};
+pub use statistics::{Summary, geometric_mean, sample};

@@ -40,6 +40,12 @@ pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     Some(logarithms.mean.exp())
 }
 
+/// At most `limit` of some items, evenly spread.
+pub fn sample<T>(items: &[T], limit: usize) -> impl ExactSizeIterator<Item = &T> {
+    let (count, sample_count) = (items.len(), items.len().min(limit));
+    (0..sample_count).map(move |i| &items[i * count / sample_count])
+}
+
 /// Would catch a median or percentile off by one place.
 #[test]
 fn numbers_are_summed_up() {

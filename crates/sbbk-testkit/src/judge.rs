@@ -1,14 +1,17 @@
-//! Wrong contacts of a backend, by comparison with brute force in f64.
+//! Wrong contacts of a dispatcher, by comparison with brute force in f64.
 
-use crate::prelude::*;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::AddAssign;
 
-use glamx::DPose3;
-use rapier3d::geometry::TriMesh;
+use glamx::{DPose3, DVec3, Vec3};
+use rapier3d::math::{Pose, Real};
 use rapier3d::parry::bounding_volume::BoundingVolume;
-use sbbk_testkit::truth::{affine, convex_body};
-use sbbk_truth::{ConvexTruth, pairs_within};
+use rapier3d::parry::query::ContactManifold;
+use rapier3d::parry::shape::{SharedShape, TriMesh};
+use sbbk_truth::{ConvexTruth, TruthPair, pairs_within};
+use serde::Serialize;
+
+use crate::truth::{affine, convex_body};
 
 /// Share of the prediction distance within which a pair may be reported or not. Higher: real
 /// misses pass; lower: rounding to f32 counts as an error.
@@ -87,11 +90,20 @@ impl Truth {
         let [(vertices1, triangles1), (vertices2, triangles2)] = [&one, &two].map(Near::flat);
         let pose = DPose3::from(*pos12);
         let pairs = pairs_within(&vertices1, &triangles1, &vertices2, &triangles2, pose, margin);
+        let pairs = pairs.into_iter().map(|pair| TruthPair {
+            triangle1: one.indices[pair.triangle1 as usize],
+            triangle2: two.indices[pair.triangle2 as usize],
+            ..pair
+        });
+        Self::of_pairs(pairs, prediction)
+    }
+
+    /// Takes the pairs of triangles of two meshes a little beyond the prediction distance.
+    pub fn of_pairs(pairs: impl IntoIterator<Item = TruthPair>, prediction: Real) -> Self {
         let contacts = pairs.into_iter().map(|pair| {
-            let [one, two] = [(&one, pair.triangle1), (&two, pair.triangle2)]
-                .map(|(near, index)| near.indices[index as usize]);
             let normals = pair.normal_is_unique.then_some(pair.normal).into_iter().collect();
-            ((one, two), ConvexTruth { distance: pair.distance, normals })
+            let truth = ConvexTruth { distance: pair.distance, normals };
+            ((pair.triangle1, pair.triangle2), truth)
         });
         Self { contacts: contacts.collect(), side: 0, prediction, bands: MESH_BANDS }
     }
@@ -134,7 +146,7 @@ impl Truth {
     }
 
     /// Counts the wrong contacts among those reported within the prediction distance.
-    pub fn judge(&self, manifolds: &[ContactManifold]) -> Errors {
+    pub fn judge<M, C>(&self, manifolds: &[ContactManifold<M, C>]) -> Errors {
         let mut seen = HashSet::new();
         let mut errors = Errors { pairs: 1, ..Errors::default() };
         for (manifold, distance) in self.reported(manifolds) {
@@ -166,9 +178,9 @@ impl Truth {
 
     /// Counts the wrong contacts of surfaces. One contact is missed if the meshes cross and none is
     /// reported. A distance is wrong if it is shorter than that of the triangles.
-    pub fn judge_surfaces(&self, manifolds: &[ContactManifold]) -> Errors {
+    pub fn judge_surfaces<M, C>(&self, manifolds: &[ContactManifold<M, C>]) -> Errors {
         let band = self.bands[0] * f64::from(self.prediction);
-        let is_wrong = |(manifold, distance): &(&ContactManifold, f64)| {
+        let is_wrong = |(manifold, distance): &(&ContactManifold<M, C>, f64)| {
             let truth = self.contacts.get(&(manifold.subshape1, manifold.subshape2));
             *distance > 0.0 && truth.is_some_and(|truth| *distance < truth.distance - band)
         };
@@ -182,10 +194,10 @@ impl Truth {
 
     /// Manifolds with their least distance, if it is within the prediction distance. Stock keeps
     /// farther points from earlier poses.
-    fn reported<'a>(
+    fn reported<'a, M, C>(
         &self,
-        manifolds: &'a [ContactManifold],
-    ) -> impl Iterator<Item = (&'a ContactManifold, f64)> {
+        manifolds: &'a [ContactManifold<M, C>],
+    ) -> impl Iterator<Item = (&'a ContactManifold<M, C>, f64)> {
         let prediction = self.prediction;
         manifolds.iter().filter_map(move |manifold| {
             let distance = manifold.points.iter().map(|point| point.dist).reduce(Real::min)?;
@@ -223,15 +235,10 @@ impl Near {
     }
 }
 
-/// At most `limit` of some items, evenly spread.
-pub fn sample<T>(items: &[T], limit: usize) -> impl ExactSizeIterator<Item = &T> {
-    let (count, sample_count) = (items.len(), items.len().min(limit));
-    (0..sample_count).map(move |i| &items[i * count / sample_count])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glamx::Quat;
     use rapier3d::parry::query::TrackedContact;
     use rapier3d::parry::shape::PackedFeatureId;
 
@@ -244,7 +251,7 @@ mod tests {
         let contacts = contacts.collect();
         let truth = Truth { contacts, side: 0, prediction: 0.02, bands: MESH_BANDS };
         let manifolds = reported.iter().map(|&(triangle, distance, normal)| {
-            let mut manifold = ContactManifold::new();
+            let mut manifold = ContactManifold::<(), ()>::new();
             (manifold.subshape1, manifold.subshape2) = (triangle, 7);
             manifold.local_n1 = normal;
             let (place, feature) = (Vec3::ZERO, PackedFeatureId::UNKNOWN);
