@@ -7,13 +7,12 @@ use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 use rapier3d::parry::query::{NonlinearRigidMotion, QueryDispatcher};
 use rapier3d::parry::shape::TriMesh;
-use rapier3d::pipeline::PhysicsWorld;
-use rapier3d::prelude::{ColliderBuilder, Pose, RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::prelude::{ColliderBuilder, Pose, RigidBody, RigidBodyBuilder};
 use sbbk_testkit::mesh;
 
 use super::moving::walled;
 use crate::support::shape;
-use crate::worlds::on_ground;
+use crate::worlds::{on_ground, watched};
 
 /// A shape that lies on a floor, turned by `turn`, with its middle at `height`.
 struct Slider {
@@ -45,23 +44,20 @@ fn sliders() -> Vec<Slider> {
 }
 
 impl Slider {
-    fn world(
-        &self,
-        ground: TriMesh,
-        start: Vec3,
-        velocity: Vec3,
-    ) -> (PhysicsWorld, RigidBodyHandle) {
+    /// Where it is at the end, and how far along the x axis it was at most.
+    fn slide(&self, steps: usize, ground: TriMesh, start: Vec3, speed: Real) -> (Vec3, Real) {
         let ground = ColliderBuilder::new(SharedShape::new(ground)).friction(self.friction);
-        let mut world = on_ground(ground, SbbkDispatcher::default());
+        let world = on_ground(ground, SbbkDispatcher::default());
         let body = RigidBodyBuilder::dynamic()
             .translation(start + self.height * Vec3::Y)
             .rotation(self.turn.to_scaled_axis())
-            .linvel(velocity)
-            .angvel(velocity.x * self.spin_of_speed)
+            .linvel(speed * Vec3::X)
+            .angvel(speed * self.spin_of_speed)
             .ccd_enabled(true);
         let collider = ColliderBuilder::new(self.shape.clone()).friction(self.friction);
-        let (body, _) = world.insert(body, collider);
-        (world, body)
+        let mut farthest = start.x;
+        let look = |body: &RigidBody| farthest = farthest.max(body.translation().x);
+        (watched(steps, world, body, collider, look).translation(), farthest)
     }
 }
 
@@ -72,9 +68,7 @@ fn shapes_that_slide_over_a_mesh_make_all_of_their_way() {
         for slider in sliders() {
             let ground = shape(&mesh::floor(60.0, cells));
             let start = Vec3::new(-12.0, 0.0, 0.13);
-            let (mut world, body) = slider.world(ground, start, 20.0 * Vec3::X);
-            (0..60).for_each(|_| world.step());
-            let end = world.bodies[body].translation();
+            let (end, _) = slider.slide(60, ground, start, 20.0);
             let (name, share) = (slider.name, (end.x - start.x) / 20.0);
             assert!((0.99..1.01).contains(&share), "{name}, {cells} cells: {share}");
             assert!((end.y - slider.height).abs() < 0.02, "{name}, {cells} cells: {end}");
@@ -89,12 +83,7 @@ fn fast_shapes_on_a_floor_stop_at_a_wall() {
         for speed in [20.0, 60.0, 200.0] {
             for phase in 0..4 {
                 let start = Vec3::new(-0.7 * phase as Real - 2.0, 0.0, 0.13);
-                let (mut world, body) = slider.world(walled(60.0, 60, 8.0), start, speed * Vec3::X);
-                let mut farthest = start.x;
-                for _ in 0..40 {
-                    world.step();
-                    farthest = farthest.max(world.bodies[body].translation().x);
-                }
+                let (_, farthest) = slider.slide(40, walled(60.0, 60, 8.0), start, speed);
                 assert!(farthest < 8.0, "{} at {speed}, {phase}: {farthest}", slider.name);
             }
         }
