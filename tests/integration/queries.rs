@@ -161,18 +161,12 @@ fn casts_slide_along_a_wall_up_to_the_next_one() {
                 let mesh = body.as_trimesh().filter(|_| prepared);
                 let _prepared =
                     mesh.map(|mesh| [&walls, mesh].map(|mesh| dispatcher.prepare(mesh)));
-                let hits = [
-                    dispatcher.cast_shapes(&pos12, velocity, &walls, body, options),
-                    dispatcher.cast_shapes(&pos12.inverse(), -velocity, body, &walls, options),
-                ];
-                for hit in hits {
-                    let time = hit.unwrap().expect("there is a wall").time_of_impact;
-
-                    assert!(
-                        (time - expected).abs() < 1e-5,
-                        "{case}, {:?}: {time}, not {expected}",
-                        body.shape_type()
-                    );
+                for is_flipped in [false, true] {
+                    let question = Question::new(&walls, body, pos12).flipped(is_flipped);
+                    let hit = LinearCast { question, velocity, options }.ask(&dispatcher);
+                    let time = hit.expect("there is a wall").time_of_impact;
+                    let says = format!("{case}, {:?}: {time}", body.shape_type());
+                    assert!((time - expected).abs() < 1e-5, "{says}, not {expected}");
                 }
             }
         }
@@ -214,18 +208,10 @@ fn casts_that_start_within_the_target_distance_pass_nothing() {
             stop_at_penetration: false,
             ..ShapeCastOptions::with_max_time_of_impact(2.0)
         };
-        let hits = [
-            ours.cast_shapes(&start, velocity, &ground, body, options),
-            ours.cast_shapes(
-                &start.inverse(),
-                start.rotation.inverse() * -velocity,
-                body,
-                &ground,
-                options,
-            ),
-        ];
-        for hit in hits {
-            let time = hit.unwrap().map(|hit| hit.time_of_impact);
+        for is_flipped in [false, true] {
+            let question = Question::new(&ground, body, start).flipped(is_flipped);
+            let hit = LinearCast { question, velocity, options }.ask(&ours);
+            let time = hit.map(|hit| hit.time_of_impact);
             let is_in_time = time.is_some_and(|time| time <= crossing);
             assert!(is_in_time, "{case}, {:?}: {time:?}, not {crossing}", body.shape_type());
         }
