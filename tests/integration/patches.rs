@@ -19,7 +19,7 @@ use crate::heightfield::terrain::rolling;
 use crate::support::{
     Pair, Question, assert_bits, direction, distance, nudge, rotation, shape, shape_with, with,
 };
-use crate::worlds::on_ground;
+use crate::worlds::{Bodies, on_ground};
 
 /// Least cosine of the normals in one patch. A cone may remove the deepest contact; the others are
 /// near to its normal.
@@ -273,20 +273,14 @@ fn a_patch_for_each_leg() {
 fn heads_come_to_rest() {
     let head = mesh::monkey_head().centred().scaled_to(2.0).shape();
     let floor = ColliderBuilder::cuboid(40.0, 1.0, 40.0).translation(-Vec3::Y);
-    let mut world = on_ground(floor, detailed(ContactDetail::Patches));
-    let heads: Vec<_> = (0..10)
-        .map(|i| {
-            let turn = Quat::from_rotation_x(i as Real) * Quat::from_rotation_y(2.3 * i as Real);
-            let at = Pose3::from_parts(Vec3::new(6.0 * i as Real - 30.0, 1.4, 0.0), turn);
-            let body = RigidBodyBuilder::dynamic().pose(at);
-            world.insert(body, ColliderBuilder::new(head.clone())).0
-        })
-        .collect();
-    for _ in 0..600 {
-        world.step();
-    }
-    let asleep = heads.iter().filter(|&&head| world.bodies[head].is_sleeping()).count();
-    assert!(asleep >= 8, "{asleep} of 10 heads lie still");
+    let heads = (0..10).map(|i| {
+        let turn = Quat::from_rotation_x(i as Real) * Quat::from_rotation_y(2.3 * i as Real);
+        let at = Pose3::from_parts(Vec3::new(6.0 * i as Real - 30.0, 1.4, 0.0), turn);
+        (RigidBodyBuilder::dynamic().pose(at), ColliderBuilder::new(head.clone()))
+    });
+    let mut heads = Bodies::new(on_ground(floor, detailed(ContactDetail::Patches)), heads);
+    heads.step(600);
+    assert!(heads.awake() <= 2, "{} of 10 heads do not lie still", heads.awake());
 }
 
 /// Features and data of all points.

@@ -59,13 +59,12 @@ pub fn after(
 /// Adds bodies to a world and steps it. Returns where they are at the end.
 pub fn settled(
     steps: usize,
-    mut world: PhysicsWorld,
+    world: PhysicsWorld,
     bodies: impl IntoIterator<Item = (RigidBodyBuilder, ColliderBuilder)>,
 ) -> Vec<Vec3> {
-    let insert = |(body, collider)| world.insert(body, collider).0;
-    let bodies: Vec<_> = bodies.into_iter().map(insert).collect();
-    (0..steps).for_each(|_| world.step());
-    bodies.iter().map(|&body| world.bodies[body].translation()).collect()
+    let mut bodies = Bodies::new(world, bodies);
+    bodies.step(steps);
+    bodies.poses().iter().map(|pose| pose.translation).collect()
 }
 
 /// Height of the lowest vertex of a mesh.
@@ -74,13 +73,23 @@ pub fn lowest(mesh: &Mesh, pose: &Pose) -> Real {
     heights.fold(Real::INFINITY, Real::min)
 }
 
-/// A world of equal bodies above a fixed ground.
+/// A world and the bodies that move in it.
 pub struct Bodies {
     pub world: PhysicsWorld,
     handles: Vec<RigidBodyHandle>,
 }
 
 impl Bodies {
+    /// Adds bodies to a world.
+    pub fn new(
+        mut world: PhysicsWorld,
+        bodies: impl IntoIterator<Item = (RigidBodyBuilder, ColliderBuilder)>,
+    ) -> Self {
+        let insert = |(body, collider)| world.insert(body, collider).0;
+        let handles = bodies.into_iter().map(insert).collect();
+        Self { world, handles }
+    }
+
     /// Bodies of `shape` at these places. Stock answers if there is no dispatcher.
     pub fn above(
         ground: SharedShape,
@@ -89,14 +98,12 @@ impl Bodies {
         angular_damping: Real,
         dispatcher: Option<SbbkDispatcher>,
     ) -> Self {
-        let mut world = on_ground(ColliderBuilder::new(ground), dispatcher);
-        let insert = |place| {
+        let bodies = places.into_iter().map(|place| {
             let body = RigidBodyBuilder::dynamic().translation(place);
             let collider = ColliderBuilder::new(shape.clone()).density(1.0);
-            world.insert(body.angular_damping(angular_damping), collider).0
-        };
-        let handles = places.into_iter().map(insert).collect();
-        Self { world, handles }
+            (body.angular_damping(angular_damping), collider)
+        });
+        Self::new(on_ground(ColliderBuilder::new(ground), dispatcher), bodies)
     }
 
     pub fn step(&mut self, count: usize) {

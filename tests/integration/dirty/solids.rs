@@ -8,7 +8,7 @@ use sbbk_testkit::mesh::{self, Mesh, uneven_box};
 use super::table::{Case, judge};
 use super::{end, with_flags, world};
 use crate::support::declare_solid;
-use crate::worlds::{after, lowest, on_ground};
+use crate::worlds::{Bodies, after, lowest, on_ground};
 
 /// Half the size of a box; its top is at height 1.
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
@@ -136,11 +136,11 @@ fn piles_of_hollow_boxes_come_to_rest() {
             let place = Vec3::new(within(1.8), 1.0 + 0.45 * i as f32, within(1.8));
             let turn = Vec3::new(within(1.5), within(1.5), within(1.5));
             let body = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
-            world.insert(body, ColliderBuilder::new(shapes[i % 2].clone()).mass(1.0)).0
+            (body, ColliderBuilder::new(shapes[i % 2].clone()).mass(1.0))
         });
-        let bodies: Vec<_> = bodies.collect();
-        (0..900).for_each(|_| world.step());
-        awake += bodies.iter().filter(|&&body| !world.bodies[body].is_sleeping()).count();
+        let mut bodies = Bodies::new(world, bodies);
+        bodies.step(900);
+        awake += bodies.awake();
     }
     assert!(awake <= 4, "{awake} of 80 boxes are awake after 15 s");
 }
