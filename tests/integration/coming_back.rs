@@ -1,19 +1,9 @@
+use crate::kinds::kinds;
+use crate::prelude::*;
+use rapier3d::parry::query::ContactManifold;
+use sbbk_core::traverse::Placement;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::{ClosestPoints, ContactManifold, QueryDispatcher};
-use rapier3d::parry::shape::SharedShape;
-use sbbk_core::traverse::Placement;
-use sbbk_testkit::mesh;
-
-use crate::kinds::kinds;
-use crate::support::{
-    Manifold, Pair, Question, assert_bits, bits, direction, every, rotation, sequence, shape,
-};
 
 /// Calls `check` with a pair of each kind in contact, in both orders, and another pose in contact.
 fn for_each_pair(mut check: impl FnMut(&str, &Question, Pose)) {

@@ -1,17 +1,5 @@
-use std::collections::{BTreeMap, BTreeSet};
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::{Compound, CompoundFlags, Shape, SharedShape};
-use sbbk_testkit::mesh;
-
-use crate::support::{
-    Dispatcher, Manifold, Pair, Question, counting, direction, distance, every, per_triangle,
-    rotation, sequence, shape, touching_shapes, triangles,
-};
-use crate::worlds::dumbbells;
+use crate::prelude::*;
+use rapier3d::parry::shape::CompoundFlags;
 
 /// Compounds of parts of every kind, of boxes that share faces, of one part, and one that reaches
 /// far.

@@ -1,20 +1,8 @@
+use crate::prelude::*;
+use rapier3d::geometry::{ContactData, ContactManifoldData};
+use rapier3d::parry::query::ContactManifold;
 use std::collections::HashSet;
 use std::sync::Arc;
-
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::geometry::{ContactData, ContactManifoldData};
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::{
-    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
-};
-use rapier3d::parry::shape::TriMesh;
-use sbbk_testkit::mesh;
-
-use crate::support::{
-    Manifold, Pair, Question, assert_same, by_triangles, every, nudge, per_triangle, sequence,
-    shape, touching, triangles,
-};
 
 /// Marks manifolds and points, to see which of them survive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,17 +1,9 @@
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
-
-use glamx::Vec3;
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
 use crate::edited_mesh::{beside, torus};
 use crate::heightfield::terrain::Terrain;
+use crate::prelude::*;
 use crate::soft_pairs::question::furniture;
-use crate::support::{Pair, Question, assert_same, counting, deform, shape_with};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 fn soft_ball() -> TriMesh {
     shape_with(&mesh::ball(1.0, 5), TriMeshFlags::DEFORMABLE)

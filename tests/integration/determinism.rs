@@ -1,12 +1,6 @@
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Vector;
-use rapier3d::pipeline::PhysicsWorld;
-use sbbk_testkit::mesh;
+use crate::prelude::*;
 use sbbk_testkit::scene::{BoxStack, HelicopterBallDrop, MonkeyPile, Scene};
 use sbbk_testkit::world::fingerprint;
-
-use crate::support::counting_patches;
-use crate::worlds::{bowl, mixed, particles, soft_ball_above, table};
 
 const STEPS: usize = 200;
 

@@ -1,15 +1,5 @@
-use rapier_integration::{ContactSet, SbbkDispatcher};
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ContactManifold, SharedShape};
-use rapier3d::math::{Pose, Vector};
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use rapier3d::pipeline::PhysicsWorld;
-use sbbk_testkit::mesh;
-
-use crate::support::{
-    Manifold, Pair, Question, assert_same, distance, having, sequence, shape, triangles,
-};
-use crate::worlds::world_of;
+use crate::prelude::*;
+use rapier3d::geometry::{ColliderHandle, ContactManifold};
 
 /// A ring of 576 triangles.
 pub fn torus() -> TriMesh {

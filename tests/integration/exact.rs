@@ -1,16 +1,7 @@
-use std::f32::consts::{PI, TAU};
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::{Cuboid, SharedShape};
-use sbbk_testkit::judge::Errors;
-use sbbk_testkit::mesh::{self, Mesh, Thread};
-
-use crate::support::{Question, SETS, distance, having, per_triangle, shape, touching};
+use crate::prelude::*;
 use crate::truth::{check_all_right, errors_of};
+use sbbk_testkit::judge::Errors;
+use sbbk_testkit::mesh::Thread;
 
 /// Sizes of meshes and prediction distances at which contacts must be right.
 const SIZES: [Real; 3] = [0.1, 2.0, 40.0];

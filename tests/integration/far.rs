@@ -1,13 +1,6 @@
 //! Contacts of fine meshes beyond the reach of their candidates.
 
-use glamx::Vec3;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::ColliderBuilder;
-use rapier3d::math::Real;
-use sbbk_testkit::mesh::{self, Mesh};
-
-use crate::worlds::world_of;
+use crate::prelude::*;
 
 /// A cradle of fine triangles rises under a bar of fine triangles. Its sides touch the bar first. Would catch a bottom without contacts.
 /// Rapier keeps contacts of the sides for five centimetres, so the bar passed through the bottom.

@@ -1,7 +1,7 @@
 //! The tests of `main.rs` that compare bits or worlds, where Rapier's features change arithmetic or
 //! threads. They are a binary of their own, as all is built anew with these features.
 
-#![allow(dead_code, reason = "of what the tests share, these use a part")]
+#![allow(dead_code, unused_imports, reason = "of what the tests share, these use a part")]
 
 mod coming_back;
 mod compound;
@@ -15,6 +15,7 @@ mod heightfield {
 }
 mod kinds;
 mod motion;
+mod prelude;
 mod properties;
 mod same_mesh;
 mod snapshot;

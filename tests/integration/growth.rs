@@ -2,17 +2,9 @@
 //!
 //! `cargo test --release --test integration growth -- --ignored --nocapture` prints the table.
 
+use crate::prelude::*;
+use rapier3d::parry::shape::Ball;
 use std::time::Instant;
-
-use glamx::{Quat, Vec3};
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Pose;
-use rapier3d::parry::query::details::ShapeCastOptions;
-use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::{Ball, Compound, Cuboid, Shape, SharedShape, TriMesh};
-use sbbk_testkit::mesh::{self, Mesh};
-
-use crate::support::{Pair, Question, cone, fan, shape, with};
 
 /// A mesh so many times at one place.
 fn layers(of: &Mesh, count: u32) -> Mesh {

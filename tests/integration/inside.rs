@@ -1,20 +1,7 @@
 //! Bodies wholly inside a solid, where no triangles are near each other. They stay, unless a user
 //! declares the solid.
 
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::{ContactDetail, SbbkDispatcher};
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::query::PointQuery;
-use rapier3d::parry::shape::TriMeshFlags;
-use rapier3d::prelude::{ColliderBuilder, RigidBody, RigidBodyBuilder};
-use sbbk_testkit::mesh::{self, Mesh};
-
-use crate::support::{
-    Manifold, Pair, Question, assert_same, counting, declare_solid, distance, every, nudge,
-    per_triangle, shape, shape_with, turned_inside_out, with,
-};
-use crate::worlds::{on_ground, watched};
+use crate::prelude::*;
 
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
 

@@ -1,17 +1,6 @@
-use std::collections::BTreeSet;
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::ContactSet;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::{PointQuery, TrackedContact, distance as shape_distance};
-use rapier3d::parry::shape::{Shape, TriMesh};
-use sbbk_testkit::mesh;
-
 use crate::heightfield::terrain::{Terrain, rolling};
-use crate::support::{
-    Manifold, Question, direction, distance, having, per_triangle, rotation, shape, triangles,
-};
+use crate::prelude::*;
+use rapier3d::parry::query::distance as shape_distance;
 
 type Point = TrackedContact<()>;
 

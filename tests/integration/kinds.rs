@@ -1,18 +1,11 @@
 //! Pairs of every kind that SBBK answers for.
 
-use std::sync::OnceLock;
-
-use glamx::Vec3;
-use oorandom::Rand32;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
-use sbbk_testkit::mesh;
-use sbbk_testkit::scene::random::first_touch;
-
 use crate::compound::compounds;
 use crate::convex::shapes::{floor, shapes};
 use crate::heightfield::terrain::rolling;
-use crate::support::{Question, direction, per_triangle, rotation, turned_inside_out};
+use crate::prelude::*;
+use sbbk_testkit::scene::random::first_touch;
+use std::sync::OnceLock;
 
 /// A mesh, or a height field, and another shape.
 pub struct Kind {

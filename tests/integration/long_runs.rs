@@ -1,19 +1,9 @@
 //! Long runs, too slow for each build: `cargo test --workspace -- --ignored`.
 
-use std::collections::VecDeque;
-
-use glamx::Vec3;
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
-use rapier3d::math::Vector;
-use rapier3d::pipeline::PhysicsWorld;
-use sbbk_testkit::mesh::{self, Mesh};
-use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, collider};
-
 use crate::determinism::run;
-use crate::support::with;
-use crate::worlds::on_ground;
+use crate::prelude::*;
+use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, collider};
+use std::collections::VecDeque;
 
 /// Bytes of trees that stay when their meshes are gone: little, so that the bound is soon reached.
 const IDLE_BYTES: usize = 1 << 20;

@@ -60,6 +60,8 @@ mod normals;
 mod pairs;
 /// A few manifolds for all contacts of a pair.
 mod patches;
+/// Names that most tests use.
+mod prelude;
 /// Promises that hold for every kind of pair.
 mod properties;
 /// Queries without manifolds against brute force.

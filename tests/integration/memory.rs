@@ -1,12 +1,6 @@
-use std::time::{Duration, Instant};
-
+use crate::prelude::*;
 use allocation_counter::measure;
-use glamx::Vec3;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
-use crate::support::{shape, shape_with, with};
+use std::time::{Duration, Instant};
 
 /// The smallest mesh there is; another one for each number.
 fn one_triangle(number: usize) -> TriMesh {

@@ -1,11 +1,4 @@
-use oorandom::Rand32;
-use rapier_integration::ContactSet;
-use rapier3d::math::{Pose, Real};
-use sbbk_testkit::mesh;
-
-use crate::support::{
-    Pair, Question, assert_same, counting, counting_of, having, sequence, shape, touching,
-};
+use crate::prelude::*;
 
 /// Would catch a pair at rest that is worked on: same pose, same prediction distance, nothing to
 /// do.

@@ -1,15 +1,6 @@
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::parry::query::{
-    DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
-};
-use rapier3d::parry::shape::TriMesh;
-use sbbk_testkit::mesh;
-use sbbk_truth::TruthPair;
-
-use crate::support::{direction, reach, rotation};
+use crate::prelude::*;
 use crate::truth::{normalized, of_meshes};
+use sbbk_truth::TruthPair;
 
 /// Two meshes on their ways, until the time of one unit.
 struct Cast<'a> {

@@ -1,14 +1,5 @@
-use std::collections::BTreeMap;
-
-use oorandom::Rand32;
-use rapier3d::math::Vector;
+use crate::prelude::*;
 use rapier3d::parry::query::details::NormalConstraints;
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh::{self, Mesh};
-
-use crate::support::{
-    Manifold, Question, TrianglePair, by_triangles, per_triangle, shape, shape_with, touching,
-};
 
 const FREE: TriMeshFlags = TriMeshFlags::empty();
 const ONE_SIDED: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES;

@@ -1,12 +1,4 @@
-use std::collections::BTreeMap;
-
-use glamx::{Quat, Vec3};
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::query::TrackedContact;
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
-use crate::support::{Pair, Question, counting, declare_solid, every, shape};
+use crate::prelude::*;
 
 /// Would catch a bound of the motion by the ball of the large mesh, which a rocking body exceeds in
 /// each step.

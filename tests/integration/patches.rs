@@ -1,25 +1,9 @@
 //! A few manifolds for all contacts of two shapes, beside every contact at the same pose.
 
-use std::collections::BTreeSet;
-use std::f32::consts::TAU;
-
-use glamx::{Pose3, Quat, Vec2, Vec3};
-use oorandom::Rand32;
-use rapier_integration::{ContactDetail, ContactSet, SbbkDispatcher};
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::ColliderBuilder;
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::query::{ContactManifold, QueryDispatcher, TrackedContact};
-use rapier3d::parry::shape::{
-    Cone, Cuboid, Cylinder, PackedFeatureId, Shape, SharedShape, TriMeshFlags,
-};
-use sbbk_testkit::mesh::{self, Mesh};
-
 use crate::heightfield::terrain::rolling;
-use crate::support::{
-    Pair, Question, assert_bits, direction, distance, nudge, rotation, shape, shape_with, with,
-};
-use crate::worlds::{Bodies, on_ground};
+use crate::prelude::*;
+use rapier3d::parry::query::ContactManifold;
+use rapier3d::parry::shape::{Cone, Cylinder, PackedFeatureId};
 
 /// Least cosine of the normals in one patch. A cone may remove the deepest contact; the others are
 /// near to its normal.

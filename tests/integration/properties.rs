@@ -1,22 +1,9 @@
 //! Promises that hold for a pair of every kind: see [`kinds`].
 
-use std::collections::BTreeMap;
-
-use allocation_counter::measure;
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::geometry::{ContactData, ContactManifoldData};
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
-use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
 use crate::kinds::{Kind, kinds, mesh_pairs};
-use crate::support::{
-    Manifold, Pair, Question, assert_bits, assert_same, counting, counting_patches, distance,
-    every, nudge, per_triangle, shape, triangles,
-};
+use crate::prelude::*;
+use allocation_counter::measure;
+use rapier3d::geometry::{ContactData, ContactManifoldData};
 
 const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
 /// Lengths of a step in units and radians, from far below any slack to beyond it.

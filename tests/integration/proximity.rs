@@ -1,9 +1,4 @@
-use glamx::Vec3;
-use rapier3d::math::Real;
-use rapier3d::parry::query::details::ShapeCastOptions;
-use rapier3d::parry::query::{ClosestPoints, QueryDispatcher, ShapeCastHit, ShapeCastStatus};
-
-use crate::support::Question;
+use crate::prelude::*;
 
 /// Brute force in f64 about a question.
 pub struct Proximity<'a> {

@@ -1,21 +1,12 @@
 //! Queries without manifolds: the dispatcher beside brute force, and beside stock Parry where stock
 //! is right.
 
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::parry::query::details::ShapeCastOptions;
-use rapier3d::parry::query::{
-    ClosestPoints, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus,
-};
-use rapier3d::parry::shape::{Ball, Capsule, Cuboid, Cylinder, Shape, TriMesh};
-use sbbk_testkit::mesh::{self, Mesh};
-use sbbk_truth::TruthPair;
-
 use crate::convex::shapes::shapes;
+use crate::prelude::*;
 use crate::proximity::{LinearCast, Proximity};
-use crate::support::{Question, direction, reach, rotation, shape};
 use crate::truth::{normalized, of_meshes};
+use rapier3d::parry::shape::{Ball, Capsule, Cylinder};
+use sbbk_truth::TruthPair;
 
 /// In sizes of the meshes.
 const TOLERANCE: f32 = 1e-5;

@@ -1,12 +1,5 @@
-use glamx::Vec3;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::dynamics::{RigidBody, RigidBodyBuilder};
-use rapier3d::geometry::ColliderBuilder;
-use rapier3d::math::{Real, Vector};
-use sbbk_testkit::mesh;
+use crate::prelude::*;
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
-
-use crate::worlds::{after, lowest, on_ground};
 
 /// Runs a scene for some steps.
 fn step(scene: &mut SceneWorld, steps: usize) {

@@ -1,14 +1,6 @@
+use crate::prelude::*;
+use rapier_integration::SbbkStats;
 use std::sync::Barrier;
-
-use oorandom::Rand32;
-use rapier_integration::{SbbkDispatcher, SbbkStats};
-use rapier3d::math::{Pose, Vector};
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
-use crate::support::{
-    Pair, Question, assert_same, per_triangle, rebuilt, sequence, shape, shape_with, touching, with,
-};
 
 /// Two of them touch when a bit more than a radius apart.
 fn ball() -> TriMesh {

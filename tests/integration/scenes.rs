@@ -1,9 +1,7 @@
-use rapier3d::pipeline::PhysicsWorld;
+use crate::prelude::*;
+use crate::truth::{check_all_right, errors_of};
 use sbbk_testkit::judge::Errors;
 use sbbk_testkit::scene::{HelicopterBallDrop, MonkeyPile, Scene};
-
-use crate::support::{Question, per_triangle};
-use crate::truth::{check_all_right, errors_of};
 
 /// The pairs of meshes that the broad phase has proposed, at their present poses.
 fn mesh_pairs(world: &PhysicsWorld) -> impl Iterator<Item = Question<'_>> {

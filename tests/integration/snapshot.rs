@@ -1,14 +1,7 @@
-use rapier_integration::SbbkDispatcher;
-use rapier3d::geometry::SharedShape;
-use rapier3d::math::Real;
-use rapier3d::pipeline::PhysicsWorld;
-use sbbk_testkit::mesh;
+use crate::heightfield::terrain::rolling;
+use crate::prelude::*;
 use sbbk_testkit::scene::{MonkeyPile, Scene};
 use sbbk_testkit::world::fingerprint;
-
-use crate::heightfield::terrain::rolling;
-use crate::support::{counting_patches, per_triangle};
-use crate::worlds::{bowl, dumbbells, heads_above, particles, soft_ball_above, table};
 
 /// Steps until heads lie on each other.
 const BEFORE: usize = 60;

@@ -1,20 +1,8 @@
 //! Questions to a dispatcher, comparisons, meshes and poses.
 
-use std::collections::BTreeMap;
-use std::f32::consts::TAU;
-
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::{
-    ContactDetail, ContactSet, PreparedTree, SbbkConfig, SbbkDispatcher, SurfaceKind,
-};
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::{
-    ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
-    QueryDispatcher,
-};
-use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh::Mesh;
+use crate::prelude::*;
+use rapier_integration::{PreparedTree, SbbkConfig, SurfaceKind};
+use rapier3d::parry::query::{ContactManifold, ContactManifoldsWorkspace};
 pub use sbbk_testkit::mesh::turned_inside_out;
 use sbbk_testkit::scene::random::first_touch;
 pub use sbbk_testkit::scene::random::{direction, rotation};

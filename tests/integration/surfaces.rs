@@ -1,18 +1,7 @@
 //! The contacts of surfaces.
 
-use std::collections::BTreeSet;
+use crate::prelude::*;
 use std::f32::consts::FRAC_PI_4;
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::shape::TriMesh;
-use sbbk_testkit::mesh::{self, Mesh};
-
-use crate::support::{
-    Manifold, Question, distance, every, nudge, per_triangle, sequence, shape, touching, triangles,
-    turned_inside_out,
-};
 
 fn ask(query: &Question) -> Vec<Manifold> {
     query.fresh(&every())

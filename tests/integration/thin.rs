@@ -1,17 +1,6 @@
 //! Thin and fast bodies: on sheets, and at the distances of soft CCD.
 
-use std::collections::BTreeSet;
-
-use glamx::{Pose3, Quat, Vec3};
-use rapier_integration::SbbkDispatcher;
-use rapier3d::geometry::ColliderBuilder;
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::shape::{SharedShape, TriMesh};
-use rapier3d::prelude::RigidBodyBuilder;
-use sbbk_testkit::mesh;
-
-use crate::support::{Manifold, Question, every, per_triangle, shape, triangles};
-use crate::worlds::{after, on_ground};
+use crate::prelude::*;
 
 /// Half the thickness of plates that are a unit wide.
 const HALF: Real = 0.015;

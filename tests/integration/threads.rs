@@ -1,14 +1,7 @@
 //! Pairs that are heavy enough for several threads.
 
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Pose;
-use rapier3d::parry::shape::SharedShape;
+use crate::prelude::*;
 use rayon::ThreadPoolBuilder;
-use sbbk_testkit::mesh::{self, Mesh};
-
-use crate::support::{Manifold, Pair, Question, assert_bits, cone, every, nudge};
 
 /// Answers of a pair in motion on so many threads: the first one, and those after.
 fn answers(

@@ -1,12 +1,10 @@
 //! Brute force in f64.
 
-use glamx::{DPose3, DVec3, Pose3};
+use crate::prelude::*;
+use glamx::{DPose3, DVec3};
 use rapier3d::parry::query::ContactManifold;
-use rapier3d::parry::shape::TriMesh;
 use sbbk_testkit::judge::{Errors, Truth};
 use sbbk_truth::{TruthPair, pairs_within};
-
-use crate::support::{Question, distance};
 
 /// Pairs of triangles of two meshes at a distance of at most `margin`.
 pub fn of_meshes(meshes: [&TriMesh; 2], pos12: DPose3, margin: f64) -> Vec<TruthPair> {

@@ -1,13 +1,6 @@
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
-use rapier3d::parry::shape::{Shape, TriMesh};
-use sbbk_testkit::mesh;
-
-use crate::support::{Pair, Question, shape};
+use crate::prelude::*;
 use crate::who_answers::{Who, kinds};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A ball with one vertex that is not a number.
 fn broken_ball() -> TriMesh {

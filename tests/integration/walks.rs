@@ -1,17 +1,6 @@
 //! Meshes without trees, which are searched by Parry's BVH and have the same contacts.
 
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::details::ShapeCastOptions;
-use rapier3d::parry::query::{ClosestPoints, QueryDispatcher};
-use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
-use crate::support::{
-    Pair, Question, SETS, assert_bits, every, having, per_triangle, rotation, shape, touching,
-};
+use crate::prelude::*;
 
 /// 9600 triangles, four units across.
 fn large(flags: TriMeshFlags) -> SharedShape {

@@ -1,18 +1,10 @@
-use glamx::Vec3;
-use rapier_integration::{SbbkConfig, SbbkDispatcher};
-use rapier3d::control::KinematicCharacterController;
-use rapier3d::math::Pose;
-use rapier3d::parry::query::details::ShapeCastOptions;
-use rapier3d::parry::query::{DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher};
-use rapier3d::parry::shape::{Polyline, PolylineFlags, Shape, SharedShape, TriMesh, TriMeshFlags};
-use rapier3d::pipeline::QueryFilter;
-use rapier3d::prelude::ColliderBuilder;
-use sbbk_testkit::mesh;
-
 use crate::convex::shapes::shapes;
 use crate::heightfield::terrain::rolling;
-use crate::support::{Question, assert_bits, counting, counting_patches, shape, shape_with, with};
-use crate::worlds::on_ground;
+use crate::prelude::*;
+use rapier_integration::SbbkConfig;
+use rapier3d::control::KinematicCharacterController;
+use rapier3d::parry::shape::{Polyline, PolylineFlags};
+use rapier3d::pipeline::QueryFilter;
 
 /// Who answers for a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,13 +1,6 @@
-use glamx::Vec3;
-use rapier_integration::SbbkDispatcher;
+use crate::prelude::*;
 use rapier3d::dynamics::SoftBodyBuilder;
-use rapier3d::geometry::SharedShape;
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::shape::{HeightField, HeightFieldCellStatus};
-use rapier3d::parry::utils::Array2;
-use rapier3d::pipeline::PhysicsWorld;
-use rapier3d::prelude::{ColliderBuilder, RigidBody, RigidBodyBuilder, RigidBodyHandle};
-use sbbk_testkit::mesh::{self, Mesh};
+use rapier3d::parry::shape::HeightFieldCellStatus;
 
 /// A world of fixed colliders. Stock answers if there is no dispatcher.
 pub fn world_of(

@@ -1,9 +1,4 @@
-use rapier_integration::ContactSet;
-use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::shape::{SharedShape, TriMesh};
-use sbbk_testkit::mesh;
-
-use crate::support::{Pair, Question, counting_of, per_triangle, shape};
+use crate::prelude::*;
 
 /// A bent slab of 192 triangles that are two units wide.
 fn ground() -> TriMesh {

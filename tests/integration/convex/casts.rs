@@ -1,19 +1,8 @@
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Real;
-use rapier3d::parry::query::details::ShapeCastOptions;
-use rapier3d::parry::query::{
-    ClosestPoints, DefaultQueryDispatcher, QueryDispatcher, ShapeCastStatus,
-};
-use rapier3d::parry::shape::{SharedShape, TriMesh};
-use sbbk_testkit::mesh;
-use sbbk_testkit::truth::{affine, convex_body};
-
 use super::queries::least_at;
 use super::shapes::{pose, shapes};
+use crate::prelude::*;
 use crate::proximity::LinearCast;
-use crate::support::{Question, direction, rotation, shape};
+use sbbk_testkit::truth::{affine, convex_body};
 
 /// Times before an impact at which brute force looks whether there was an earlier one.
 const LOOKS: usize = 6;

@@ -1,18 +1,5 @@
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::geometry::SharedShape;
-use rapier3d::math::Real;
-use rapier3d::parry::query::{NonlinearRigidMotion, QueryDispatcher};
-use rapier3d::parry::shape::TriMesh;
-use rapier3d::prelude::{ColliderBuilder, Pose, RigidBody, RigidBodyBuilder};
-use sbbk_testkit::mesh;
-
 use super::moving::walled;
-use crate::support::shape;
-use crate::worlds::{on_ground, watched};
+use crate::prelude::*;
 
 /// A shape that lies on a floor, turned by `turn`, with its middle at `height`.
 struct Slider {

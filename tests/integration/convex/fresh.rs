@@ -1,16 +1,7 @@
-use std::collections::BTreeMap;
-
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Real;
-use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
-use sbbk_testkit::mesh;
-use sbbk_testkit::truth::convex_body;
-
 use super::question::check_against_truth;
 use super::shapes::{PREDICTIONS, lattice_pose, pose, shapes};
-use crate::support::{Question, distance, per_triangle, rotation, shape, shape_with};
+use crate::prelude::*;
+use sbbk_testkit::truth::convex_body;
 
 /// Would catch the closest point as a fifth one, and corners that are left out.
 #[test]

@@ -1,12 +1,7 @@
-use glamx::{DAffine3, DQuat, Pose3, Vec3};
-use rapier3d::math::Real;
-use rapier3d::parry::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastHit};
-use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
-use sbbk_testkit::mesh;
-use sbbk_truth::ConvexBody;
-
 use super::queries::{least_at, truth_of};
-use crate::support::shape;
+use crate::prelude::*;
+use glamx::{DAffine3, DQuat};
+use sbbk_truth::ConvexBody;
 
 /// A floor of this side with a wall across it, which is a sheet and the last triangle.
 pub(super) fn walled(side: Real, cells: u32, place: Real) -> TriMesh {

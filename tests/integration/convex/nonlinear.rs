@@ -1,21 +1,10 @@
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::{DVec3, Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Real;
-use rapier3d::parry::query::{
-    DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
-};
-use rapier3d::parry::shape::{SharedShape, TriMesh};
-use sbbk_testkit::mesh;
-use sbbk_testkit::truth::convex_body;
-use sbbk_truth::ConvexBody;
-
 use super::moving::{Cast, walled};
 use super::queries::truth_at;
 use super::shapes::{lattice_pose, pose, shapes};
-use crate::support::{direction, reach, rotation, shape};
+use crate::prelude::*;
+use glamx::DVec3;
+use sbbk_testkit::truth::convex_body;
+use sbbk_truth::ConvexBody;
 
 fn motion(
     random: &mut Rand32,

@@ -1,17 +1,11 @@
-use glamx::{DAffine3, DVec3, Pose3, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Real;
+use super::shapes::{pose, shapes};
+use crate::prelude::*;
+use crate::proximity::Proximity;
+use glamx::{DAffine3, DVec3};
 use rapier3d::parry::bounding_volume::Aabb;
-use rapier3d::parry::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::{SharedShape, TriMesh, Triangle};
-use sbbk_testkit::mesh;
+use rapier3d::parry::shape::Triangle;
 use sbbk_testkit::truth::{affine, convex_body};
 use sbbk_truth::ConvexBody;
-
-use super::shapes::{pose, shapes};
-use crate::proximity::Proximity;
-use crate::support::{Question, shape};
 
 /// Signed distances with the mesh at a place in the frame of the body.
 pub(super) fn truth_at(mesh: &TriMesh, body: &ConvexBody, pose: DAffine3) -> Vec<f64> {

@@ -1,12 +1,7 @@
-use std::collections::BTreeMap;
-
-use glamx::Vec3;
-use rapier3d::math::Real;
+use crate::prelude::*;
 use rapier3d::parry::bounding_volume::BoundingVolume;
 use sbbk_core::traverse::Placement;
 use sbbk_truth::ConvexBody;
-
-use crate::support::{Manifold, Question, distance};
 
 /// Compares contacts with brute force in f64, up to `tolerance`. Returns their number. Triangles beside
 /// the box of the shape are known to be far.

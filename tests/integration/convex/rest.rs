@@ -1,13 +1,4 @@
-use std::f32::consts::TAU;
-
-use glamx::Vec3;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Pose;
-use rapier3d::parry::shape::SharedShape;
-use sbbk_testkit::mesh;
-
-use crate::support::counting;
-use crate::worlds::Bodies;
+use crate::prelude::*;
 
 /// A head that falls on a floor and comes to rest: where it is, step by step.
 fn fall(floor: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Vec<Pose> {

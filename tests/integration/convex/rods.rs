@@ -1,13 +1,4 @@
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Real;
-use rapier3d::parry::shape::SharedShape;
-use sbbk_testkit::mesh;
-
-use crate::support::{Question, distance, every, shape};
+use crate::prelude::*;
 
 /// A thin shape along y, about a unit long, and the points whose hull it is, each with a radius.
 struct Rod {

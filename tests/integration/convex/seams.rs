@@ -1,18 +1,5 @@
-use std::collections::BTreeMap;
-
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Real;
-use rapier3d::parry::query::{DefaultQueryDispatcher, PointQuery, QueryDispatcher, TrackedContact};
-use rapier3d::parry::shape::{Cuboid, TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
 use super::shapes::shapes;
-use crate::support::{
-    Manifold, Question, bits, distance, every, per_triangle, rotation, shape, shape_with,
-    touching_shapes,
-};
+use crate::prelude::*;
 
 /// Would catch contacts at edges between triangles, points beside the body, and a body without
 /// contacts.

@@ -1,11 +1,4 @@
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier3d::math::Real;
-use rapier3d::parry::shape::{SharedShape, TriMesh};
-
-use crate::support::{direction, rotation};
+use crate::prelude::*;
 
 /// A convex shape of each kind, about `size` across.
 pub fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {

@@ -1,16 +1,6 @@
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::{ContactDetail, SbbkDispatcher};
-use rapier3d::geometry::ColliderBuilder;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::SharedShape;
-use rapier3d::prelude::{RigidBody, RigidBodyBuilder};
-use sbbk_core::surface::SurfaceKind;
-use sbbk_testkit::mesh::{self, Mesh};
-
 use super::shapes::shapes;
-use crate::support::{Pair, Question, assert_bits, rotation, with};
-use crate::worlds::{on_ground, watched};
+use crate::prelude::*;
+use sbbk_core::surface::SurfaceKind;
 
 fn leading_out(detail: ContactDetail) -> SbbkDispatcher {
     with(|config| (config.convex_leave_solids, config.detail) = (true, detail))

@@ -1,11 +1,4 @@
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::SharedShape;
-use sbbk_testkit::mesh::{self, Mesh};
-
-use crate::support::{Pair, Question};
+use crate::prelude::*;
 
 /// Half the width of a body's base, and half its height.
 const HALF: Real = 0.2;

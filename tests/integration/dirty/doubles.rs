@@ -1,11 +1,4 @@
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::parry::shape::TriMesh;
-use sbbk_testkit::mesh::{self, Mesh};
-
-use super::end;
-use crate::support::{Pair, Question, assert_same, every, rotation, shape, touching};
+use super::*;
 
 /// The mesh with all its triangles a number of times.
 fn repeated(mesh: &Mesh, times: usize) -> Mesh {

@@ -1,12 +1,4 @@
-use std::f32::consts::PI;
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier3d::geometry::SharedShape;
-use rapier3d::math::{Pose, Real};
-use sbbk_testkit::mesh::{self, Mesh};
-
-use crate::support::{Question, distance, every};
+use super::*;
 
 /// Height of the bodies over the block.
 const GAP: Real = 0.006;

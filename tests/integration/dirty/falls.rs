@@ -1,15 +1,5 @@
-use glamx::{Pose3, Vec2, Vec3};
-use oorandom::Rand32;
-use rapier3d::dynamics::{RigidBody, RigidBodyBuilder};
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::math::Real;
+use super::*;
 use rapier3d::parry::shape::Capsule;
-use rapier3d::parry::utils::Array2;
-use sbbk_testkit::mesh::{self, Mesh};
-use sbbk_testkit::scene::random::rotation;
-
-use super::world;
-use crate::worlds::{lowest, watched};
 
 /// Flat grounds at height 0.
 fn grounds() -> [(&'static str, SharedShape); 9] {

@@ -1,11 +1,4 @@
-use std::f32::consts::{FRAC_PI_2, TAU};
-
-use glamx::{Quat, Vec2, Vec3};
-use oorandom::Rand32;
-use rapier3d::math::{Pose, Real};
-use sbbk_testkit::mesh;
-
-use crate::support::{Question, every};
+use super::*;
 
 /// Segments of the disc.
 const SEGMENTS: u32 = 32;

@@ -1,11 +1,5 @@
-use glamx::{Pose3, Quat, Vec3};
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use sbbk_testkit::mesh::{self, Mesh};
-
 use super::rides::Course;
-use super::world;
-use crate::worlds::after;
+use super::*;
 
 /// Side of a floor, in units; all paths are shorter than 12.
 const SIZE: f32 = 16.0;

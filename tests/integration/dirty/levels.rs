@@ -1,12 +1,4 @@
-use glamx::Vec3;
-use oorandom::Rand32;
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use sbbk_testkit::mesh::{self, Mesh};
-
-use super::table::{Case, judge};
-use super::world;
-use crate::worlds::settled;
+use super::*;
 
 /// Half the size of a slab of twelve triangles, whose top is at height 0, and of a body.
 const SLAB: Vec3 = Vec3::new(8.0, 0.5, 8.0);

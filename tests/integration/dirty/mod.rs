@@ -4,14 +4,9 @@
 //! when a listed case passes. To see the tables:
 //! `cargo test -p sbbk --test integration dirty -- --nocapture`.
 
-use glamx::Vec3;
-use rapier_integration::{PreparedTree, SbbkDispatcher};
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::parry::shape::TriMeshFlags;
-use rapier3d::pipeline::PhysicsWorld;
-
-use crate::worlds::{after, on_ground, world_of};
+use crate::prelude::*;
+use rapier_integration::PreparedTree;
+use table::{Case, judge};
 
 /// Meshes with triangles that are there several times.
 mod doubles;

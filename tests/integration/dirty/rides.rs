@@ -1,17 +1,4 @@
-use std::f32::consts::{FRAC_PI_2, TAU};
-
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::dynamics::{RigidBody, RigidBodyBuilder};
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::parry::shape::TriMeshFlags;
-use sbbk_testkit::mesh::{self, Mesh};
-use sbbk_testkit::scene::random::rotation;
-
-use super::table::{Case, judge};
-use super::{FLAGS, world};
-use crate::worlds::{after, watched, world_of};
+use super::*;
 
 const FRICTION: f32 = 0.1;
 /// Steps in which a body lands.

@@ -1,12 +1,5 @@
-use glamx::{Vec2, Vec3};
-use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::parry::shape::TriMeshFlags;
-use sbbk_testkit::mesh::{self, Mesh};
-
-use super::table::{Case, judge};
-use super::{with_flags, world};
-use crate::worlds::after;
+use super::*;
+use rapier3d::dynamics::MassProperties;
 
 /// Half the side of a vessel of single walls.
 const HALF: f32 = 0.4;

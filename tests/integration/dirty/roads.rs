@@ -1,15 +1,5 @@
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::Vec3;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::ColliderBuilder;
-use rapier3d::parry::shape::TriMeshFlags;
-use sbbk_testkit::mesh::{self, Mesh};
-
 use super::rides::{Course, riders};
-use super::table::{Case, judge};
-use crate::worlds::{after, world_of};
+use super::*;
 
 /// Side of all chunks, or beams, of a road together.
 const SIZE: f32 = 16.0;

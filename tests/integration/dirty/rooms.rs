@@ -1,15 +1,4 @@
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::parry::shape::TriMeshFlags;
-use sbbk_testkit::mesh::{self, Mesh};
-
-use super::table::{Case, judge};
-use super::{FLAGS, end, prepared_world, with_flags, world};
-use crate::support::{Pair, Question, assert_bits, counting_patches, direction, rotation};
-use crate::worlds::{after, settled, world_of};
+use super::*;
 
 /// Half the side of a room, and of a body in it.
 const ROOM: f32 = 3.0;

@@ -1,11 +1,5 @@
-use glamx::{Quat, Vec3};
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::ColliderBuilder;
+use super::*;
 use sbbk_testkit::mesh::Thread;
-use std::f32::consts::TAU;
-
-use super::table::{Case, judge};
-use super::world;
 
 const BOLT: Thread = Thread::BOLT;
 /// With a tenth of a pitch of play, and so much less deep.

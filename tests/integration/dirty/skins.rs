@@ -1,11 +1,4 @@
-use glamx::Vec3;
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::math::Real;
-use sbbk_testkit::mesh;
-
-use super::world;
-use crate::worlds::after;
+use super::*;
 
 /// Half extents of the boxes.
 const HALVES: Vec3 = Vec3::new(0.3, 0.2, 0.4);

@@ -1,15 +1,5 @@
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use sbbk_testkit::mesh::{self, Mesh};
-use sbbk_testkit::scene::random::rotation;
-
-use super::table::{Case, judge};
-use super::{FLAGS, prepared_world};
-use crate::worlds::{after, lowest};
+use super::*;
+use rapier3d::dynamics::MassProperties;
 
 const ANGLE: f32 = 20.0;
 const FRICTION: f32 = 0.8;

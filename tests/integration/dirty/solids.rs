@@ -1,14 +1,5 @@
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::ColliderBuilder;
-use sbbk_testkit::mesh::{self, Mesh, uneven_box};
-
-use super::table::{Case, judge};
-use super::{end, with_flags, world};
-use crate::support::declare_solid;
-use crate::worlds::{Bodies, after, lowest, on_ground};
+use super::*;
+use sbbk_testkit::mesh::uneven_box;
 
 /// Half the size of a box; its top is at height 1.
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);

@@ -1,7 +1,5 @@
-use std::collections::BTreeSet;
+use super::*;
 use std::fmt::{Display, Write};
-
-use rapier3d::parry::shape::TriMeshFlags;
 
 /// End of the name of a row with flags.
 const FLAG: &str = " + flag";

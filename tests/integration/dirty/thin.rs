@@ -1,14 +1,5 @@
-use glamx::{Pose3, Vec2, Vec3};
-use oorandom::Rand32;
-use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::parry::shape::TriMeshFlags;
-use sbbk_testkit::mesh::{self, Mesh};
-
-use super::table::{Case, judge};
-use super::{end, with_flags, world};
-use crate::support::rotation;
-use crate::worlds::settled;
+use super::*;
+use rapier3d::dynamics::MassProperties;
 
 fn grounds() -> [(&'static str, Mesh); 3] {
     let block = mesh::cuboid(Vec3::new(10.0, 0.5, 10.0), 10).mapped(|at| at - 0.5 * Vec3::Y);

@@ -1,17 +1,4 @@
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Pose;
-use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::TriMesh;
-use sbbk_testkit::mesh::{self, Mesh};
-use sbbk_testkit::scene::random::rotation;
-
-use super::table::{Case, judge};
-use super::with_flags;
-use crate::support::{Question, shape_with};
+use super::*;
 
 const POSES: usize = 200;
 /// Draws a pose.

@@ -1,12 +1,6 @@
-use glamx::Vec3;
-use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Pose;
-use rapier3d::parry::shape::{HeightFieldCellStatus, HeightFieldFlags};
-use sbbk_testkit::mesh;
-
 use super::terrain::{Terrain, place};
-use crate::support::{Pair, Question, assert_same, nudge, shape};
+use crate::prelude::*;
+use rapier3d::parry::shape::{HeightFieldCellStatus, HeightFieldFlags};
 
 /// Would catch answers for a field that is no longer there, where a host keeps the workspace over
 /// an edit.

@@ -1,12 +1,8 @@
-use glamx::Vec3;
-use oorandom::Rand32;
+use super::terrain::{Terrain, place};
+use crate::prelude::*;
 use rapier_integration::TriangleContacts;
 use rapier3d::parry::query::details::NormalConstraints;
-use rapier3d::parry::shape::{HeightFieldFlags, TriMeshFlags};
-use sbbk_testkit::mesh;
-
-use super::terrain::{Terrain, place};
-use crate::support::{Manifold, Question, assert_same, per_triangle, shape_with};
+use rapier3d::parry::shape::HeightFieldFlags;
 
 /// Would catch constraints of a neighbour, of the wrong shape, or none at all.
 #[test]

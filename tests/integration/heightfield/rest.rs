@@ -1,10 +1,5 @@
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Real;
-use rapier3d::parry::shape::SharedShape;
-use sbbk_testkit::mesh;
-
 use super::terrain::rolling;
-use crate::worlds::heads_above;
+use crate::prelude::*;
 
 /// The reason for all this: under stock Rapier heads fall through a height field. Here they come to
 /// rest, about where they do on the same terrain as a mesh.

@@ -1,11 +1,5 @@
-use glamx::Vec3;
-use oorandom::Rand32;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::{HeightField, HeightFieldCellStatus, TriMesh};
-use rapier3d::parry::utils::Array2;
-use sbbk_testkit::mesh;
-
-use crate::support::{Manifold, Question, touching};
+use crate::prelude::*;
+use rapier3d::parry::shape::HeightFieldCellStatus;
 
 /// A field, and the mesh of its triangles in the order of their numbers.
 pub struct Terrain {

@@ -1,18 +1,10 @@
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier_integration::{ContactDetail, SurfaceKind};
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::PointQuery;
-use rapier3d::parry::shape::{HeightField, TriMeshFlags, Triangle};
-use sbbk_testkit::judge::Errors;
-use sbbk_testkit::mesh;
-
 use super::terrain::{Terrain, heights, place, terrains};
+use crate::prelude::*;
 use crate::soft_pairs::question::assert_same_set;
-use crate::support::{
-    Manifold, Question, distance, per_triangle, shape, shape_with, triangles, with,
-};
 use crate::truth::{check_all_right, errors_of};
+use rapier_integration::SurfaceKind;
+use rapier3d::parry::shape::Triangle;
+use sbbk_testkit::judge::Errors;
 
 /// Judges the answer to a question with a field by the terrain as a mesh.
 fn errors_on(terrain: &Terrain, question: Question) -> Errors {

@@ -1,13 +1,6 @@
-use glamx::Vec3;
-use oorandom::Rand32;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::{CompositeShape, Shape, TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
-use crate::support::{
-    Manifold, Pair, Question, assert_same, every, per_triangle, rotation, sequence, shape_with,
-};
+use crate::prelude::*;
 use crate::who_answers::{Who, kinds};
+use rapier3d::parry::shape::CompositeShape;
 
 /// Makes some coordinates NaN: one, all of a vertex, or one of every seventh vertex.
 fn break_some(mesh: &mut TriMesh, random: &mut Rand32) {

@@ -1,18 +1,9 @@
-use std::cell::Cell;
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
-use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
-use sbbk_testkit::mesh;
-
 use super::question::{anew, assert_same_set, furniture};
 use crate::heightfield::terrain::Terrain;
-use crate::support::{Pair, Question, assert_same, counting, rotation, shape_with};
+use crate::prelude::*;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use std::cell::Cell;
 
 /// Event of a pair between two queries.
 #[derive(Clone, Copy, Debug)]

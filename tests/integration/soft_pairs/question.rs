@@ -1,7 +1,4 @@
-use rapier3d::math::Pose;
-use rapier3d::parry::shape::{Compound, SharedShape, TriMesh, TriMeshFlags};
-
-use crate::support::{Manifold, Question, assert_same, per_triangle, triangles};
+use crate::prelude::*;
 
 /// The answer for a rigid mesh built anew.
 pub fn anew(question: &Question) -> Vec<Manifold> {

@@ -1,9 +1,4 @@
-use rapier3d::math::Real;
-use rapier3d::pipeline::PhysicsWorld;
-use sbbk_testkit::mesh;
-
-use crate::support::counting;
-use crate::worlds::{bowl, particles, soft_ball_above, table};
+use crate::prelude::*;
 
 /// The lowest particle, and the mean height.
 fn heights(world: &PhysicsWorld) -> [Real; 2] {
