@@ -4,12 +4,9 @@
 
 use crate::descent;
 use crate::field::grid::Grid;
-use crate::support::{Random, Soup, bumpy_ball, descend_field};
-use glamx::{DVec3, Pose3, Vec3};
+use crate::prelude::*;
 use sbbk_core::field::FieldFrame;
-use sbbk_core::traverse::{BoxTest, Placement, Slack, SlackLimits, SlackPlan, TestedBox};
-use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
-use sbbk_core::volumes::{SLABS, Sphere, directions};
+use sbbk_core::traverse::BoxTest;
 use sbbk_truth as truth;
 
 const KDOPS: LayerPlan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };

@@ -1,15 +1,8 @@
 //! The descent against the brute-force reference: never a pair lost, none visited without need.
 
-use std::collections::BTreeSet;
-use std::f32::consts::FRAC_PI_2;
-
+use crate::prelude::*;
 use crate::query::pairs_within;
-use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
 use crate::tree::check as check_tree;
-use glamx::{Pose3, Quat, Vec3};
-use sbbk_core::leaf::LeafTest;
-use sbbk_core::traverse::{DescentCounts, DescentScratch, PairFrame, Placement, descend};
-use sbbk_core::tree::{BuildOptions, LayerPlan, Node, Tree};
 
 /// The pairs of triangles that descent and leaf test leave.
 pub fn survivors(

@@ -1,10 +1,8 @@
 //! Lines of volumes: all edges, each once, on the boundary, and around all that the volume holds.
 
-use crate::support::{Random, bumpy_ball};
-use glamx::{Pose3, Vec3};
-use sbbk_core::draw::{self, BOX, KDOP, SPHERE};
-use sbbk_core::tree::LayerPlan;
-use sbbk_core::volumes::{Aabb, Kdop, SLABS, Sphere, directions};
+use crate::prelude::*;
+use sbbk_core::draw;
+use sbbk_core::draw::{BOX, KDOP, SPHERE};
 
 fn lines(draw: impl FnOnce(&mut dyn FnMut(Vec3, Vec3))) -> Vec<[Vec3; 2]> {
     let mut lines = Vec::new();

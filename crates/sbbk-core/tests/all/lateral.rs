@@ -1,11 +1,8 @@
 //! Lateral culling rejects only pairs whose exact contact is aslant, now and after a motion.
 
-use crate::support::Random;
-use glamx::{Pose3, Vec3};
-use sbbk_core::contact::{Feature, TriangleContact, contact};
-use sbbk_core::leaf::{LateralCulling, LeafTest};
-use sbbk_core::traverse::{PairFrame, Placement};
-use sbbk_core::tree::LeafBatch;
+use crate::prelude::*;
+use sbbk_core::contact::contact;
+use sbbk_core::leaf::LateralCulling;
 
 const REACH: f32 = 0.02;
 const DISTANCE: f32 = 0.25 * REACH;

@@ -1,13 +1,7 @@
 //! Vertices where many triangles meet.
 
+use crate::prelude::*;
 use std::cell::Cell;
-use std::f32::consts::TAU;
-
-use glamx::{DVec3, Vec3};
-use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Facets, PlaceMemo, Side};
-
-use crate::support::{PlainFacets, Soup};
 
 /// A triangulated surface that counts visited triangles.
 struct Counted<'a> {

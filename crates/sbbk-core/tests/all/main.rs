@@ -12,6 +12,7 @@ mod lateral;
 mod long_rings;
 mod penetration;
 mod placement;
+mod prelude;
 mod query;
 mod sides;
 mod slack;

@@ -1,10 +1,7 @@
 //! `Outward` against definitions that look at every axis.
 
-use crate::support::Random;
-use glamx::DVec3;
-use sbbk_core::contact::{
-    DoubleCone, Extremal, Feature, ManifoldPoints, Outward, TriangleContact, contact,
-};
+use crate::prelude::*;
+use sbbk_core::contact::{DoubleCone, Extremal, Outward, contact};
 
 type Triangle = [DVec3; 3];
 

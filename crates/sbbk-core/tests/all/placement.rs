@@ -1,8 +1,7 @@
 //! The motion bound and the map of a placement.
 
-use crate::support::Random;
-use glamx::{DPose3, DVec3};
-use sbbk_core::traverse::Placement;
+use crate::prelude::*;
+use glamx::DPose3;
 
 /// Would catch a bound without the lever of the rotation, the motion of the centre in the wrong
 /// frame, and a uselessly large bound.

@@ -1,13 +1,10 @@
 //! Sides of triangles against points of boxes that overlap.
 
+use crate::prelude::*;
+use crate::surface::shapes::{cube, mapped, together};
+use sbbk_core::surface::{RayTriangles, side, winding_sign};
 use std::cell::Cell;
 use std::ops::ControlFlow;
-
-use crate::support::{Random, Soup, bumpy_ball};
-use crate::surface::shapes::{cube, mapped, together};
-use glamx::{DVec3, Vec3};
-use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, PlaceMemo, RayTriangles, Side, SurfaceKind, side, winding_sign};
 
 /// The middle and the half-lengths of a box.
 type Cuboid = [Vec3; 2];

@@ -1,11 +1,6 @@
 //! Candidates of a descent with slack are complete while the plan reuses them.
 
-use std::collections::BTreeMap;
-
-use crate::support::Random;
-use glamx::{Pose3, Vec3};
-use sbbk_core::traverse::{Placement, Slack, SlackLimits, SlackPlan};
-use sbbk_core::volumes::Sphere;
+use crate::prelude::*;
 
 const BALL: Sphere = Sphere { centre: Vec3::new(0.3, -0.2, 0.1), radius: 0.7 };
 

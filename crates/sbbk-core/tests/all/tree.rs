@@ -1,8 +1,7 @@
 //! Trees hold each triangle once in valid volumes, and builds report faults of the input.
 
-use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
-use glamx::{Quat, Vec3};
-use sbbk_core::tree::{BATCH, BuildError, BuildOptions, BuildStats, LayerPlan, Node, Tree};
+use crate::prelude::*;
+use sbbk_core::tree::{BATCH, BuildError, BuildStats};
 
 fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {
     BuildOptions { layers: Some(LayerPlan { sphere_root: true, kdop_from_depth }), leaf_size }

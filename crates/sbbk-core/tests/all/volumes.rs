@@ -1,10 +1,9 @@
 //! Volumes contain what they are fitted to; directions and their correspondence; the exact minimal
 //! sphere.
 
-use crate::support::Random;
-use glamx::{DMat3, DVec3, Vec3};
+use crate::prelude::*;
+use glamx::DMat3;
 use proptest::prelude::*;
-use sbbk_core::volumes::{Aabb, Kdop, Sphere, directions};
 
 fn coordinate() -> impl Strategy<Value = f32> {
     prop_oneof![

@@ -3,11 +3,10 @@
 
 use super::check::{TOLERANCE, Triangle, part, size};
 use super::strategies::{point, triangle};
-use glamx::{DVec2, DVec3};
+use crate::prelude::*;
+use glamx::DVec2;
 use proptest::prelude::*;
-use sbbk_core::contact::{
-    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, clip, contact, push_closest,
-};
+use sbbk_core::contact::{FeaturePair, ManifoldPoint, clip, contact, push_closest};
 use sbbk_truth as truth;
 use std::collections::HashSet;
 

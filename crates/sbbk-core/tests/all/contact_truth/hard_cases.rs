@@ -2,7 +2,7 @@
 
 use super::check::{Triangle, check};
 use super::strategies::{decades, flat_triangle, point, rotation, triangle};
-use glamx::{DQuat, DVec3};
+use crate::prelude::*;
 use proptest::prelude::*;
 use sbbk_core::contact::{contact, contact_from};
 use sbbk_truth as truth;

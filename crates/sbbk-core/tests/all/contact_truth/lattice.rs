@@ -3,7 +3,7 @@
 //! lie in one plane or have no area.
 
 use super::check::check;
-use glamx::DVec3;
+use crate::prelude::*;
 use proptest::prelude::*;
 use std::cmp::Ordering;
 

@@ -2,7 +2,7 @@
 
 use super::check::{check, size};
 use super::strategies::{decades, point, triangle};
-use glamx::DVec3;
+use crate::prelude::*;
 use proptest::prelude::*;
 use sbbk_core::contact::contact;
 use sbbk_truth as truth;

@@ -1,7 +1,8 @@
 //! Random triangles, sizes and rotations.
 
 use super::check::Triangle;
-use glamx::{DQuat, DVec3, DVec4};
+use crate::prelude::*;
+use glamx::DVec4;
 use proptest::prelude::*;
 
 /// A point in the cube from -1 to 1.

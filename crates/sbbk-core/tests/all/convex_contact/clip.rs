@@ -1,8 +1,6 @@
 //! The points where a triangle and a feature of a shape overlap, seen along a normal.
 
-use crate::support::Random;
-use glamx::{DQuat, DVec3};
-use sbbk_core::contact::Feature;
+use crate::prelude::*;
 use sbbk_core::contact::convex::{FeaturePoints, clip_feature};
 
 /// Twice the area of a triangle seen along z.

@@ -1,7 +1,6 @@
 //! Closed forms whose contacts are known exactly.
 
-use crate::support::Random;
-use glamx::DVec3;
+use crate::prelude::*;
 use sbbk_core::contact::convex::{PointSupport, half_space_contact, round_contact};
 use sbbk_truth::ConvexBody;
 

@@ -3,8 +3,7 @@
 
 use super::shape::{Kind, Shape};
 use super::truth::{check, gap, size};
-use crate::support::Random;
-use glamx::DVec3;
+use crate::prelude::*;
 
 /// The widest gap in a search over directions: a lower bound, exact for bodies that cross unless the
 /// search ends in a local maximum.

@@ -2,8 +2,7 @@
 
 use super::shape::{Core, Kind, Shape, first_farthest};
 use super::truth::{check, size};
-use crate::support::Random;
-use glamx::{DVec3, Vec3};
+use crate::prelude::*;
 use sbbk_core::contact::convex::{
     ConeSupport, CuboidSupport, CylinderSupport, HullPoints, PointSupport, SegmentSupport,
     SupportMap, convex_contact,

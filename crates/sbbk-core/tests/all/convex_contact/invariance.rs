@@ -2,8 +2,7 @@
 
 use super::shape::{Core, Kind, Shape};
 use super::truth::size;
-use crate::support::Random;
-use glamx::DVec3;
+use crate::prelude::*;
 
 fn kinds() -> impl Iterator<Item = Kind> {
     Kind::POLYTOPES.into_iter().chain(Kind::CURVED)

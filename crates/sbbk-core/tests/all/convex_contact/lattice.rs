@@ -2,8 +2,7 @@
 
 use super::shape::{Core, Shape};
 use super::truth::{check, size};
-use crate::support::Random;
-use glamx::DVec3;
+use crate::prelude::*;
 
 impl Random {
     /// A point with whole coordinates from -2 to 2.

@@ -3,7 +3,7 @@
 use super::drawn::check_drawn;
 use super::shape::Kind;
 use super::truth::{check, size};
-use crate::support::Random;
+use crate::prelude::*;
 use std::convert::Infallible;
 
 #[test]

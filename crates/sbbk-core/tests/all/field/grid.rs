@@ -1,7 +1,5 @@
-use glamx::{DVec3, Vec3};
+use crate::prelude::*;
 use sbbk_core::field::{FieldTriangle, HeightGrid};
-
-use crate::support::Random;
 
 /// A height field with holes.
 #[derive(Clone, Debug)]

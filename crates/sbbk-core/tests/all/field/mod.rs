@@ -3,16 +3,10 @@
 pub mod grid;
 mod pairs;
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use glamx::{DVec3, Pose3, Vec3};
-use sbbk_core::field::{FieldFrame, FieldTriangle};
-use sbbk_core::traverse::{DescentCounts, Placement, TestedBox};
-use sbbk_core::tree::Tree;
-use sbbk_truth::contact;
-
-use crate::support::{Soup, descend_field};
+use crate::prelude::*;
 use grid::Grid;
+use sbbk_core::field::{FieldFrame, FieldTriangle};
+use sbbk_truth::contact;
 
 /// A triangle of the field and one of the mesh.
 type Pair = (FieldTriangle, u32);

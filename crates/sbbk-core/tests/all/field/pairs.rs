@@ -1,11 +1,6 @@
-use std::collections::BTreeSet;
-use std::f32::consts::FRAC_PI_2;
-
-use glamx::{DVec3, Pose3, Quat, Vec3};
-
 use super::grid::Grid;
 use super::{Tally, bounds, found, meets, pairs_within, placed, tree};
-use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
+use crate::prelude::*;
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 

@@ -1,11 +1,8 @@
 //! Linear casts.
 
-use glamx::{DVec3, Pose3, Vec3};
-use sbbk_core::query::{Cast, CastOptions, SearchScratch, cast};
-use sbbk_core::traverse::Placement;
-
 use super::{all_pairs, distance_of, least, tree, triangle};
-use crate::support::{Random, Soup, bumpy_ball, soup};
+use crate::prelude::*;
+use sbbk_core::query::{Cast, CastOptions, cast};
 
 fn options(max_time: f32, target_distance: f32) -> CastOptions {
     CastOptions { max_time, target_distance, stop_at_penetration: true }

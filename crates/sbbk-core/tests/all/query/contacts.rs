@@ -1,13 +1,8 @@
 //! `contacts` as whole sets of pairs.
 
-use std::collections::BTreeMap;
-
-use glamx::{Pose3, Vec3};
-use sbbk_core::query::{FoundPair, SearchScratch, contacts};
-use sbbk_core::traverse::Placement;
-
 use super::{pairs_within, tree, triangle, triangles_of};
-use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
+use crate::prelude::*;
+use sbbk_core::query::contacts;
 
 type Distances = BTreeMap<[u32; 2], f64>;
 

@@ -5,11 +5,9 @@ mod contacts;
 mod motion;
 mod nearest;
 
-use glamx::{DPose3, DVec3, Pose3, Vec3};
-use sbbk_core::tree::Tree;
+use crate::prelude::*;
+use glamx::DPose3;
 use sbbk_truth::{self as truth, TruthPair};
-
-use crate::support::Soup;
 
 fn tree(soup: &Soup) -> Tree {
     soup.tree(None)

@@ -1,14 +1,9 @@
 //! Conservative advancement of meshes that move and turn, from apart and from contact.
 
-use glamx::{DVec3, Pose3, Quat, Vec3};
-use sbbk_core::query::{
-    Advance, AdvanceOptions, FoundPair, MeshBodies, SearchScratch, advance, advance_from_contact,
-};
-use sbbk_core::traverse::Placement;
-use sbbk_truth::TruthPair;
-
 use super::{all_pairs, exact, least, pairs_within, tree, triangle, triangles_of};
-use crate::support::{Random, Soup, bumpy_ball, soup};
+use crate::prelude::*;
+use sbbk_core::query::{Advance, AdvanceOptions, MeshBodies, advance, advance_from_contact};
+use sbbk_truth::TruthPair;
 
 /// MeshBodies this close touch.
 const TOLERANCE: f64 = 1e-6;

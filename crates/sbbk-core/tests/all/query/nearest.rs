@@ -1,13 +1,9 @@
 //! `nearest`, `deepest` and `meeting`.
 
-use glamx::{DVec3, Pose3, Quat, Vec3};
-use proptest::prelude::*;
-use sbbk_core::query::{CastOptions, FoundPair, SearchScratch, cast, deepest, meeting, nearest};
-use sbbk_core::traverse::Placement;
-use sbbk_core::tree::{LayerPlan, Tree};
-
 use super::{all_pairs, distance_of, least, tree, triangle};
-use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
+use crate::prelude::*;
+use proptest::prelude::*;
+use sbbk_core::query::{CastOptions, cast, deepest, meeting, nearest};
 
 /// Share of the size of the meshes: a rounded rotation, `|q| = 1 ± 1e-7`, moves mesh 2 by as much.
 const TOLERANCE: f64 = 1.0e-6;

@@ -1,10 +1,8 @@
 //! Normal cones hold all directions of local minima.
 
 use super::shapes::sheet;
-use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
-use glamx::Vec3;
-use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Facets, Side, minimum_cones};
+use crate::prelude::*;
+use sbbk_core::surface::minimum_cones;
 
 fn random_mesh(random: &mut Random, i: u64) -> Soup {
     match i % 5 {

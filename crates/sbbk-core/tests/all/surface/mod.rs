@@ -7,10 +7,7 @@ mod kinds;
 /// Meshes whose kind is known.
 pub mod shapes;
 
-use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
-use glamx::{DVec3, Vec3};
-use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Facets, Side};
+use crate::prelude::*;
 use shapes::{cube, sheet};
 
 /// The corners of a half-edge's triangle, from its start on.

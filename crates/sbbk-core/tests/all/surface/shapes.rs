@@ -1,7 +1,4 @@
-use std::f32::consts::{PI, TAU};
-
-use crate::support::Soup;
-use glamx::Vec3;
+use crate::prelude::*;
 
 /// A cube of edge length 1 in eight vertices.
 pub fn cube() -> Soup {
