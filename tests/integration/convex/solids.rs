@@ -155,8 +155,7 @@ fn what_stands_in_a_room_has_contacts() {
                 let up = -shape.compute_aabb(&turned).mins.y - depth;
                 let pose = Pose::translation(0.0, up, 0.0) * turned;
                 let question = Question::new(&*room, &*shape, pose);
-                let mut pair = Pair::<(), ()>::default();
-                let found = &pair.ask(&dispatcher, &question).manifolds;
+                let found = question.fresh(&dispatcher);
                 found.iter().any(|manifold| !manifold.points.is_empty())
             };
             let count = (0..100).filter(touches).count();

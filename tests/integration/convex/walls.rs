@@ -47,8 +47,7 @@ fn bodies_at_the_foot_of_a_wall_touch_it() {
                     let place = Vec3::new(2.0 - HALF + past, HIGH - sunk, z);
                     let pose = Pose::from_rotation(turn) * Pose::from_translation(place);
                     let question = Question::new(&*ground, &*body, pose);
-                    let mut pair = Pair::<(), ()>::default();
-                    let found = &pair.ask(&dispatcher, &question).manifolds;
+                    let found = question.fresh(&dispatcher);
                     let level = turn * Vec3::X;
                     let walls = found.iter().filter(|it| it.local_n1.dot(level).abs() > 0.9);
                     let least = walls.flat_map(|wall| &wall.points).map(|point| point.dist);
