@@ -9,7 +9,7 @@ use glamx::DVec3;
 use parry3d::query::Ray;
 use sbbk_core::query::TrianglePair;
 
-use super::islands::{IslandWay, OverlapIslands, SAME_SIDE, Unsupported};
+use super::islands::{ALIKE, IslandWay, OverlapIslands, SAME_SIDE, Unsupported};
 use super::pose::PairPose;
 use super::query::ContactList;
 use super::shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
@@ -37,10 +37,6 @@ const FLAT: f64 = 1.0e-3;
 /// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all their way. Lower: bodies deep
 /// in others turn and sink.
 const DEPTH_PER_LENGTH: f64 = 0.5;
-
-/// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor let go. Lower: edges that cross push
-/// each other aside.
-const ALIKE: f64 = 1.1;
 
 /// Greatest number of points of a contour. Higher: more time; lower: bodies turn about the chosen ones.
 const MOST_POINTS: usize = 6;

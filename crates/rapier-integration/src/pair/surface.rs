@@ -447,6 +447,16 @@ impl<'a> SurfaceFilter<'a> {
         self.surfaces[i].is_local_minimum(self.pair[i], feature, self.in_frame(i, axis), None)
     }
 
+    /// Returns true if both surfaces end where an overlap along a direction does, at the outermost corners.
+    pub(super) fn ends_along(&self, way: DVec3) -> bool {
+        (0..2).all(|i| {
+            let axis = [way, -way][i];
+            let height = |k: &usize| self.local.corners[i][*k].dot(axis);
+            let outermost = (0..3).max_by(|a, b| height(a).total_cmp(&height(b)));
+            outermost.is_some_and(|k| self.ends(i, Feature::Vertex(k as u8), axis))
+        })
+    }
+
     /// Returns the square of the least cosine between the normal of a triangle and an axis along which its surface may end.
     fn least_square(&self, i: usize) -> f64 {
         self.surfaces[i].facets.cones(self.pair[i]).least_square(false)

@@ -310,7 +310,11 @@ impl PairQuery for TriangleQuery<'_> {
         }
         let lead_one_way = meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
-        if islands.finish_first_pass(separation, |pair, way| self.overlap(pair, way)) {
+        let overlap = |pair: [u32; 2], way: DVec3| self.overlap(pair, way);
+        let ends = |pair: [u32; 2], way: DVec3| {
+            self.shapes.with_filter(pair, |filter| filter.ends_along(way)).unwrap_or(false)
+        };
+        if islands.finish_first_pass(separation, overlap, ends) {
             self.second_pass(islands, contours, clipped, contacts);
         }
         if limits.reach < f64::from(self.shapes.pose.prediction) {
