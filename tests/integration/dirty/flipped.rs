@@ -43,3 +43,34 @@ fn flipped_triangles_carry_as_others_do() {
         }
     }
 }
+
+/// Cubes that are sunk a little in the narrow side of a slab, each mesh with some triangles that are wound the other way, or none.
+/// Would catch contacts far along the wall, of triangles that know no way out of it.
+#[test]
+fn cubes_in_a_narrow_side_have_no_contact_along_it() {
+    let (every, mut random) = (every(), Rand32::new(1));
+    let (mut count, mut deep) = (0, 0);
+    for round in 0..4000 {
+        let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
+        let half = Vec3::from_array([(); 3].map(|()| within(0.3, 1.0)));
+        let sunk = 3e-4 * 67.0_f32.powf(within(0.0, 1.0));
+        let beside = Vec3::new(1.5 - sunk, within(-0.3, 0.3), within(-1.5, 1.5));
+        let place = beside + half * Vec3::new(1.0, within(-1.0, 1.0), within(-1.0, 1.0));
+        let turn = if round % 3 == 0 { within(-PI, PI) } else { 0.0 };
+        let turn = Quat::from_rotation_x(turn);
+        let mut slab = mesh::cuboid(Vec3::new(1.5, 0.3, 1.5), 1 + random.rand_range(0..12));
+        let mut cube = mesh::cuboid(half, 1 + random.rand_range(0..4));
+        let turned = if round % 2 == 0 { &mut slab } else { &mut cube };
+        let last = turned.triangles.len() as u32;
+        let share = last * (round as u32 / 2 % 4) / 100;
+        (0..share).for_each(|_| turned.triangles[random.rand_range(0..last) as usize].swap(1, 2));
+        let pose = Pose::from_parts(place, turn);
+        let [slab, cube] = [slab, cube].map(|of| of.shape());
+        let found = Question::new(&*slab.0, &*cube.0, pose).fresh(&every);
+        let deepest = found.iter().map(distance).fold(0.0, Real::min);
+        deep += u32::from(deepest < -3.0 * sunk - 0.01);
+        count += u32::from(deepest < 0.0);
+    }
+    println!("{deep} of {count} too deep");
+    assert!(count > 2000 && deep == 0, "{deep} of {count}");
+}
