@@ -102,6 +102,11 @@ impl<'a> SurfaceFilter<'a> {
         Some(filter)
     }
 
+    /// Returns true if a triangle has the body on both sides, or is a double. It has no contacts.
+    pub(super) fn has_wall_within(&self) -> bool {
+        self.surfaces.iter().any(|surface| surface.side == Side::Inner)
+    }
+
     /// First pass. `may_pass`: edges and vertices may pass each other. `clipped` is memory.
     #[inline(always)]
     pub(super) fn apply(
@@ -111,7 +116,7 @@ impl<'a> SurfaceFilter<'a> {
         clipped: &mut ManifoldPoints,
     ) -> Verdict {
         let of_triangles = TriangleSurfaceContact::of_triangles(contact);
-        if self.surfaces.iter().any(|surface| surface.side == Side::Inner) {
+        if self.has_wall_within() {
             return Verdict::None;
         }
         if contact.distance > self.shapes.filter_distance {

@@ -422,7 +422,9 @@ impl TriangleQuery<'_> {
             return first.contacts.push((pair, TriangleSurfaceContact::of_triangles(contact)));
         };
         match filter.apply(contact, true, &mut first.clipped) {
-            Verdict::None if filter.is_touching(&contact, NEARLY_TOUCHING) => {
+            Verdict::None
+                if filter.is_touching(&contact, NEARLY_TOUCHING) && !filter.has_wall_within() =>
+            {
                 first.islands.touching.push(pair);
             }
             Verdict::None => {}
@@ -447,7 +449,11 @@ impl TriangleQuery<'_> {
     ) {
         contacts.clear();
         let within = f64::from(self.shapes.pose.prediction);
-        let contact = |of: &Candidate<Hint>| self.shapes.nearest_points(of.subshapes, within);
+        let contact = |of: &Candidate<Hint>| {
+            let has_contacts = |filter: &SurfaceFilter<'_>| !filter.has_wall_within();
+            let counts = self.shapes.with_filter(of.subshapes, has_contacts) == Some(true);
+            counts.then(|| self.shapes.nearest_points(of.subshapes, within)).flatten()
+        };
         let is_near = |(_, hit): &TriangleHit| hit.contact.distance <= limits.reach;
         let may_touch = candidates.iter().filter(|candidate| limits.may_touch(candidate));
         contacts.extend(may_touch.filter_map(contact).filter(is_near));
