@@ -322,6 +322,15 @@ impl PairQuery for TriangleQuery<'_> {
         } else if limits.reach > self.shapes.filter_distance {
             self.shapes.reject_aside(directions, islands, contacts);
         }
+        let within = f64::from(self.shapes.pose.prediction);
+        let of_triangles = |pair: [u32; 2]| self.shapes.nearest_points(pair, within);
+        let parts = |(_, hit): &TriangleHit| hit.contact.distance <= 0.0;
+        let is_crossing = islands.crossings.iter().any(|crossing| crossing.is_crossing);
+        if is_crossing && !contacts.is_empty() && !contacts.iter().any(parts) {
+            // Contacts of triangles that are apart do not part those that cross.
+            contacts.extend(islands.overlaps().filter_map(of_triangles));
+            contacts.sort_unstable_by_key(|(pair, _)| *pair);
+        }
         self.shapes.reject_passed(islands, passed, contacts);
         self.shapes.reject_through(&islands.crossings, contacts);
         if contacts.is_empty() {
@@ -330,9 +339,7 @@ impl PairQuery for TriangleQuery<'_> {
             contacts.extend(held.and_then(|held| held.push_out(is_in_both, self.inside)));
         }
         if contacts.is_empty() {
-            let within = f64::from(self.shapes.pose.prediction);
-            let contact = |pair: [u32; 2]| self.shapes.nearest_points(pair, within);
-            contacts.extend(islands.overlaps().filter_map(contact));
+            contacts.extend(islands.overlaps().filter_map(of_triangles));
         }
     }
 
