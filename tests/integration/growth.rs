@@ -226,8 +226,8 @@ fn parts_of_centimetres_do_not_cost_the_square_of_their_triangles() {
     }
 }
 
-/// Prints microseconds of casts and distances. A cuboid meets as many triangles at once as are under it. Would catch an exact
-/// test of each of these.
+/// Prints microseconds of casts and distances. A cuboid meets as many triangles at once as are under it. Would catch one
+/// exact test for each triangle.
 #[test]
 #[ignore = "times queries of microseconds"]
 fn flat_shapes_over_a_fine_floor_take_little_longer() {

@@ -177,7 +177,7 @@ impl Truth {
     }
 
     /// Counts the wrong contacts of surfaces. One contact is missed if the meshes cross and none is
-    /// reported. A distance is wrong if it is shorter than that of the triangles.
+    /// reported. A distance is wrong if the triangles are farther apart.
     pub fn judge_surfaces<M, C>(&self, manifolds: &[ContactManifold<M, C>]) -> Errors {
         let band = self.bands[0] * f64::from(self.prediction);
         let is_wrong = |(manifold, distance): &(&ContactManifold<M, C>, f64)| {

@@ -31,7 +31,7 @@ fn sliders() -> Vec<Slider> {
 }
 
 impl Slider {
-    /// Where it is at the end, and how far along the x axis it was at most.
+    /// Returns the place of the body at the end, and how far it came along the x axis.
     fn slide(&self, steps: usize, ground: TriMesh, start: Vec3, speed: Real) -> (Vec3, Real) {
         let ground = ColliderBuilder::new(SharedShape::new(ground)).friction(self.friction);
         let world = on_ground(ground, SbbkDispatcher::default());

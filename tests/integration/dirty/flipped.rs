@@ -44,7 +44,7 @@ fn flipped_triangles_carry_as_others_do() {
     }
 }
 
-/// Cubes that are sunk a little in the narrow side of a slab, each mesh with some triangles that are wound the other way, or none.
+/// Cubes that are sunk a little in the narrow side of a slab. Up to 3 % of the triangles of either mesh are wound the other way.
 /// Would catch contacts far along the wall, of triangles that know no way out of it.
 #[test]
 fn cubes_in_a_narrow_side_have_no_contact_along_it() {

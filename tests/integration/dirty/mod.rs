@@ -51,7 +51,7 @@ fn world(ground: ColliderBuilder) -> PhysicsWorld {
     on_ground(ground, SbbkDispatcher::default())
 }
 
-/// Where a body is some steps after its start in a world with a fixed ground.
+/// Returns the place of a body some steps after its start in a world with a fixed ground.
 fn end(steps: usize, ground: &SharedShape, start: RigidBodyBuilder, body: &SharedShape) -> Vec3 {
     let [ground, body] = [ground, body].map(|shape| ColliderBuilder::new(shape.clone()));
     after(steps, world(ground), start, body).translation()

@@ -244,8 +244,8 @@ pub(super) struct Outermost {
 }
 
 impl Outermost {
-    /// Chooses the outermost of `points`, which come with their distances. Point 0 must be the deepest. Each next point is the one
-    /// that the body reaches after the least turn: far outside the convex hull along `normal`, and little above the deepest one.
+    /// Chooses the outermost of `points`, which come with their distances. Point 0 must be the deepest. The body reaches
+    /// each next point after the least turn. Along `normal` it is far outside the convex hull, and little above the deepest point.
     /// More than four are chosen if others as deep are far from these.
     pub(super) fn choose(
         &mut self,

@@ -1,7 +1,7 @@
 //! Linear casts of a convex shape against a mesh.
 //!
 //! The distance of two convex bodies is a convex function of time. Newton's method from the start
-//! therefore approaches the first impact from before, or shows that there is none. Normals of curved
+//! therefore approaches the first impact from before. It also shows that there is no impact. Normals of curved
 //! shapes are not exact: after a step that goes too far, the next one uses the rule of false position.
 
 use std::cell::Cell;
