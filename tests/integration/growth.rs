@@ -249,8 +249,8 @@ fn flat_shapes_over_a_fine_floor_take_little_longer() {
         let found = dispatcher.distance(&pose, floor, &cuboid).expect("known shapes").distance;
         assert!((found - 0.2).abs() < 1e-6, "{found}");
     };
-    let asked: [(&str, &dyn Fn(Pose, &TriMesh)); 2] = [("cast", &cast), ("distance", &distance)];
-    for (name, ask) in asked {
+    for name in ["cast", "distance"] {
+        let ask: &dyn Fn(Pose, &TriMesh) = if name == "cast" { &cast } else { &distance };
         let [few, many] = [16, 256].map(|cells| micros(&shape(&mesh::floor(8.0, cells)), ask));
         println!("{name}: {few:.2} us over 512 triangles, {many:.2} over 131,072");
         assert!(many < 8.0 * few, "{name}: {few:.2} us, {many:.2} us");

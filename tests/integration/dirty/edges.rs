@@ -88,3 +88,34 @@ fn bodies_sunk_in_a_block_do_not_meet_the_wall_below_its_edge() {
     }
     assert!(count > 1000, "{count} contacts");
 }
+
+/// Flat meshes that are sunk in two blocks and reach over the gap between these, so that the far wall is near. Would catch contacts
+/// with the far wall. Such contacts stop bodies that slide over the gap.
+#[test]
+fn meshes_over_a_gap_do_not_meet_its_far_wall() {
+    let profile = [[0.0, -0.1], [0.3, -0.1], [0.3, 0.1], [0.0, 0.1]].map(Vec2::from);
+    let disc = mesh::revolved(&profile, 24);
+    let bodies = [mesh::cuboid(Vec3::new(0.3, 0.1, 0.2), 2), disc];
+    let bodies = bodies.map(|body| body.shape());
+    let block =
+        |cells: u32, x: Real| mesh::cuboid(Vec3::splat(0.5), cells).mapped(|v| v + x * Vec3::X);
+    let grounds = [1, 3]
+        .map(|cells| Mesh::merged("gap", &[block(cells, -0.525), block(cells, 0.525)]).shape());
+    let (every, mut random) = (every(), Rand32::new(12));
+    let (mut count, mut aside) = (0, 0);
+    for i in 0..1000 {
+        let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
+        let turn = Quat::from_rotation_y(within(-PI, PI));
+        let body = &bodies[i % 2];
+        let reach = body.compute_aabb(&Pose::from_rotation(turn)).maxs.x;
+        let over = 0.025 - reach + within(-0.01, 0.001);
+        let place = Vec3::new(over, 0.6 - within(2e-4, 2e-3), within(-0.2, 0.2));
+        let ground = &grounds[i / 2 % 2];
+        let found =
+            Question::new(&*ground.0, &*body.0, Pose::from_parts(place, turn)).fresh(&every);
+        count += found.len();
+        aside += found.iter().filter(|manifold| manifold.local_n1.y < 0.5).count();
+    }
+    println!("{aside} of {count} aside");
+    assert!(count > 1000 && 1000 * aside <= count, "{aside} of {count} aside");
+}

@@ -24,6 +24,8 @@ pub(crate) struct OverlapIslands {
     with_triangle: FxHashMap<Node, usize>,
     /// Final contacts, the least deep first.
     by_depth: Vec<usize>,
+    /// Ways that part all pairs of an island at a small depth, and the depths.
+    one_ways: Vec<(DVec3, f64)>,
     /// Support of each island, at the index of its first crossing. Others have no pairs.
     support: Vec<Support>,
 }
@@ -236,10 +238,6 @@ const FAR: f64 = 0.5;
 /// each other aside.
 pub(super) const ALIKE: f64 = 1.1;
 
-/// Ratio of depths from which a shorter way out of an island is looked for. Higher: edges that cross push each other aside. Lower:
-/// more time for bodies in each other.
-const MUCH_LONGER: f64 = 2.0;
-
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
 /// lower: contacts that do not push against each other are rejected.
 pub(super) const SAME_SIDE: f64 = 0.5;
@@ -295,11 +293,12 @@ impl OverlapIslands {
     }
 
     /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
-    /// the wrong way. `separation`: direction in which mesh 2 separates, if known. `overlap` returns the overlap
+    /// the wrong way. `separation`: direction in which mesh 2 separates, if known. `small`: depth of bodies at rest. `overlap` returns the overlap
     /// of two triangles along a direction, and `ends` tells if both surfaces end where that overlap does.
     pub(super) fn finish_first_pass(
         &mut self,
         separation: Option<DVec3>,
+        small: f64,
         overlap: impl Fn([u32; 2], DVec3) -> Overlap,
         ends: impl Fn([u32; 2], DVec3) -> bool,
     ) -> bool {
@@ -313,11 +312,14 @@ impl OverlapIslands {
         let has_both_sides = pushes_to(1.0) && pushes_to(-1.0);
         let is_good = |crossing: &Crossing| crossing.is_fine() && crossing.far_depth() == 0.0;
         let is_all_good = !has_both_sides && self.crossings.iter().all(is_good);
-        if is_all_good && !self.have_unlike_depths() {
+        self.one_ways.clear();
+        if is_all_good && self.are_within(SAME_SIDE) {
+            self.note_one_way(small);
             return false;
         }
         self.join();
-        if !self.reject_longer(&overlap, ends) && is_all_good {
+        let is_one_way = self.keep_one_way(small, &overlap, &ends);
+        if !(self.reject_longer(&overlap, ends) || is_one_way) && is_all_good {
             return false;
         }
         if self.find_unserved(overlap) {
@@ -347,46 +349,6 @@ impl OverlapIslands {
         for (index, crossing) in crossings.iter_mut().enumerate() {
             crossing.place.island = islands.first(index);
         }
-    }
-
-    /// Returns true if a final contact is much deeper than another one that pushes another way.
-    fn have_unlike_depths(&self) -> bool {
-        let fine = || self.crossings.iter().filter(|crossing| crossing.is_fine());
-        let Some(least) = fine().min_by(|a, b| a.depth.total_cmp(&b.depth)) else { return false };
-        fine().any(|one| is_longer(one, least.normal, least.depth))
-    }
-
-    /// Rejects contacts of pairs that another contact of their island separates by a shorter way, and returns true if there are
-    /// any. A pair knows only the ways across its own faces and edges.
-    fn reject_longer(
-        &mut self,
-        overlap: impl Fn([u32; 2], DVec3) -> Overlap,
-        ends: impl Fn([u32; 2], DVec3) -> bool,
-    ) -> bool {
-        let Self { crossings, ways, by_depth, .. } = self;
-        ways.clear();
-        by_depth.clear();
-        by_depth.extend((0..crossings.len()).filter(|&i| crossings[i].is_fine()));
-        by_depth.sort_by(|&a, &b| crossings[a].depth.total_cmp(&crossings[b].depth));
-        let mut found = false;
-        for &i in &*by_depth {
-            let Crossing { pair, normal, depth, place, .. } = crossings[i];
-            let known = ways.entry(place.island).or_default();
-            let parts = |&(way, length): &(DVec3, f64)| {
-                overlap(pair, way).length <= ALIKE * length && ends(pair, way)
-            };
-            let mut shorter =
-                known.iter().filter(|(way, length)| is_longer(&crossings[i], *way, *length));
-            if shorter.any(parts) {
-                (crossings[i].place.is_rejected, found) = (true, true);
-            } else {
-                match known.iter_mut().find(|(way, _)| way.dot(normal) >= SAME_DIRECTION) {
-                    Some((_, length)) => *length = depth,
-                    None => _ = known.try_push((normal, depth)),
-                }
-            }
-        }
-        found
     }
 
     /// Finds the pairs that no reliable contact of their island separates, and returns true if there are any. A contact with a
@@ -541,14 +503,11 @@ impl OverlapIslands {
     }
 }
 
-/// Returns true if a contact pushes another way than `way`, and by much more than `length`.
-fn is_longer(of: &Crossing, way: DVec3, length: f64) -> bool {
-    of.depth > MUCH_LONGER * length && way.dot(of.normal) < SAME_SIDE
-}
-
 fn leads_apart(normal: DVec3, separation: Option<DVec3>) -> bool {
     separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
 }
+
+mod ways;
 
 #[cfg(test)]
 mod tests;

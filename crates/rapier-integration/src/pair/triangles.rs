@@ -26,13 +26,13 @@ use super::borders::meet_borders;
 use super::deep::{self, ContourMemory};
 use super::descents::{ChunkResult, DescentMemory, in_chunks};
 use super::field::{Field, FieldToken};
-use super::islands::{Overlap, OverlapIslands};
+use super::islands::{ALIKE, Overlap, OverlapIslands, SAME_SIDE};
 use super::pose::{Moving, PairPose};
 use super::query::{Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery};
 use super::reduce::{ContactSummary, PatchPlan};
 use super::shapes::{
-    ContactSource, FieldShape, Hint, MeshShape, NEARLY_TOUCHING, Room, TriangleHit, TriangleShape,
-    TriangleShapes, TriangleSurfaceContact, contact_of, filter_distance,
+    ContactSource, FieldShape, Hint, LIP, MeshShape, NEARLY_TOUCHING, Room, TriangleHit,
+    TriangleShape, TriangleShapes, TriangleSurfaceContact, contact_of, filter_distance,
 };
 use super::sides::{HeldMesh, InsideTest, PassedTriangles};
 use super::surface::{SurfaceFilter, Verdict};
@@ -311,26 +311,18 @@ impl PairQuery for TriangleQuery<'_> {
         let lead_one_way = meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
         let overlap = |pair: [u32; 2], way: DVec3| self.overlap(pair, way);
-        let ends = |pair: [u32; 2], way: DVec3| {
-            self.shapes.with_filter(pair, |filter| filter.ends_along(way)).unwrap_or(false)
-        };
-        if islands.finish_first_pass(separation, overlap, ends) {
+        let ends = |pair: [u32; 2], way: DVec3| self.ends_along(pair, way);
+        let small = LIP * self.shapes.filter_unit();
+        if islands.finish_first_pass(separation, small, overlap, ends) {
             self.second_pass(islands, contours, clipped, contacts);
         }
+        self.drop_lifted(islands.one_ways(), contacts);
         if limits.reach < f64::from(self.shapes.pose.prediction) {
             self.shapes.add_far(!*is_near, lead_one_way, clipped, contacts);
         } else if limits.reach > self.shapes.filter_distance {
             self.shapes.reject_aside(directions, islands, contacts);
         }
-        let within = f64::from(self.shapes.pose.prediction);
-        let of_triangles = |pair: [u32; 2]| self.shapes.nearest_points(pair, within);
-        let parts = |(_, hit): &TriangleHit| hit.contact.distance <= 0.0;
-        let is_crossing = islands.crossings.iter().any(|crossing| crossing.is_crossing);
-        if is_crossing && !contacts.is_empty() && !contacts.iter().any(parts) {
-            // Contacts of triangles that are apart do not part those that cross.
-            contacts.extend(islands.overlaps().filter_map(of_triangles));
-            contacts.sort_unstable_by_key(|(pair, _)| *pair);
-        }
+        self.part_crossing(islands, contacts);
         self.shapes.reject_passed(islands, passed, contacts);
         self.shapes.reject_through(&islands.crossings, contacts);
         if contacts.is_empty() {
@@ -339,7 +331,7 @@ impl PairQuery for TriangleQuery<'_> {
             contacts.extend(held.and_then(|held| held.push_out(is_in_both, self.inside)));
         }
         if contacts.is_empty() {
-            contacts.extend(islands.overlaps().filter_map(of_triangles));
+            contacts.extend(self.of_overlaps(islands));
         }
     }
 
@@ -464,6 +456,48 @@ impl TriangleQuery<'_> {
         let is_near = |(_, hit): &TriangleHit| hit.contact.distance <= limits.reach;
         let may_touch = candidates.iter().filter(|candidate| limits.may_touch(candidate));
         contacts.extend(may_touch.filter_map(contact).filter(is_near));
+    }
+
+    /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
+    fn drop_lifted(
+        &self,
+        ways: &[(DVec3, f64)],
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
+            let is_lifted = |(way, depth): &(DVec3, f64)| {
+                let height = || self.overlap(*pair, *way).length;
+                way.dot(contact.normal).abs() < SAME_SIDE
+                    && (0.0..=ALIKE * depth).contains(&height())
+                    && self.ends_along(*pair, *way)
+            };
+            contact.distance <= 0.0 || !ways.iter().any(is_lifted)
+        });
+    }
+
+    /// Adds the contacts of crossing triangles if all contacts are apart, as these do not part the triangles.
+    fn part_crossing(
+        &self,
+        islands: &OverlapIslands,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        let is_crossing = islands.crossings.iter().any(|crossing| crossing.is_crossing);
+        let is_apart = |(_, hit): &TriangleHit| hit.contact.distance > 0.0;
+        if is_crossing && !contacts.is_empty() && contacts.iter().all(is_apart) {
+            contacts.extend(self.of_overlaps(islands));
+            contacts.sort_unstable_by_key(|(pair, _)| *pair);
+        }
+    }
+
+    /// Returns the contacts of the triangles of all overlaps.
+    fn of_overlaps(&self, islands: &OverlapIslands) -> impl Iterator<Item = TriangleHit> {
+        let within = f64::from(self.shapes.pose.prediction);
+        islands.overlaps().filter_map(move |pair| self.shapes.nearest_points(pair, within))
+    }
+
+    /// Returns true if both surfaces end where the overlap of two triangles along a direction does.
+    fn ends_along(&self, pair: [u32; 2], way: DVec3) -> bool {
+        self.shapes.with_filter(pair, |filter| filter.ends_along(way)).unwrap_or(false)
     }
 
     /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.

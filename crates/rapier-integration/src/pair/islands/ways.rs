@@ -1,0 +1,116 @@
+//! Ways that part all pairs of an island, or a pair that knows only longer ones.
+//!
+//! Two crossing triangles know the ways across their own faces and edges. Another contact of their island may part them
+//! by a shorter way, if both surfaces end where the overlap along that way does.
+
+use arrayvec::ArrayVec;
+use glamx::DVec3;
+
+use super::{ALIKE, Crossing, MOST_DIRECTIONS, Overlap, OverlapIslands, SAME_DIRECTION, SAME_SIDE};
+
+/// Ratio of depths from which a shorter way out of an island is looked for. Higher: edges that cross push each other aside. Lower:
+/// more time for bodies in each other.
+const MUCH_LONGER: f64 = 2.0;
+
+impl OverlapIslands {
+    /// Returns true if the normals of all contacts are within an angle of the first one.
+    pub(super) fn are_within(&self, cosine: f64) -> bool {
+        let Some(first) = self.crossings.first() else { return true };
+        self.crossings.iter().all(|one| one.normal.dot(first.normal) >= cosine)
+    }
+
+    /// Notes the way of the contacts if there is only one, at a `small` depth.
+    pub(super) fn note_one_way(&mut self, small: f64) {
+        let depth = self.crossings.iter().map(|crossing| crossing.depth).fold(0.0, f64::max);
+        let way = self.crossings.first().map(|crossing| (crossing.normal, depth));
+        if depth <= small && self.are_within(SAME_DIRECTION) {
+            self.one_ways.extend(way);
+        }
+    }
+
+    /// Rejects contacts that push aside where one way parts all pairs of the island at a `small` depth. Returns true if there are any.
+    pub(super) fn keep_one_way(
+        &mut self,
+        small: f64,
+        overlap: impl Fn([u32; 2], DVec3) -> Overlap,
+        ends: impl Fn([u32; 2], DVec3) -> bool,
+    ) -> bool {
+        let Self { crossings, ways, one_ways, .. } = self;
+        ways.clear();
+        for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
+            add_way(ways.entry(crossing.place.island).or_default(), crossing);
+        }
+        for &Crossing { pair, normal, place, .. } in &*crossings {
+            let Some(known) = ways.get_mut(&place.island) else { continue };
+            known.retain(|(way, depth)| {
+                let parts = || overlap(pair, *way).length <= ALIKE * *depth && ends(pair, *way);
+                *depth <= small && (way.dot(normal) >= SAME_DIRECTION || parts())
+            });
+        }
+        let mut found = false;
+        for (index, Crossing { normal, place, .. }) in crossings.iter_mut().enumerate() {
+            let least = ways
+                .get(&place.island)
+                .and_then(|known| known.iter().min_by(|(_, a), (_, b)| a.total_cmp(b)));
+            let Some(&(way, depth)) = least else { continue };
+            if place.island == index {
+                one_ways.push((way, depth));
+            }
+            let is_other = way.dot(*normal) < SAME_SIDE;
+            place.is_rejected |= is_other;
+            found |= is_other;
+        }
+        found
+    }
+
+    /// Returns the ways that part all pairs of an island at a small depth, and the depths.
+    pub(in crate::pair) fn one_ways(&self) -> &[(DVec3, f64)] {
+        &self.one_ways
+    }
+
+    /// Rejects contacts of pairs that another contact of their island separates by a shorter way, and returns true if there are
+    /// any. A pair knows only the ways across its own faces and edges.
+    pub(super) fn reject_longer(
+        &mut self,
+        overlap: impl Fn([u32; 2], DVec3) -> Overlap,
+        ends: impl Fn([u32; 2], DVec3) -> bool,
+    ) -> bool {
+        let Self { crossings, ways, by_depth, .. } = self;
+        ways.clear();
+        by_depth.clear();
+        by_depth.extend((0..crossings.len()).filter(|&i| crossings[i].is_fine()));
+        by_depth.sort_by(|&a, &b| crossings[a].depth.total_cmp(&crossings[b].depth));
+        let mut found = false;
+        for &i in &*by_depth {
+            let Crossing { pair, place, .. } = crossings[i];
+            let known = ways.entry(place.island).or_default();
+            let parts = |&(way, length): &(DVec3, f64)| {
+                overlap(pair, way).length <= ALIKE * length && ends(pair, way)
+            };
+            let mut shorter =
+                known.iter().filter(|(way, length)| is_longer(&crossings[i], *way, *length));
+            if shorter.any(parts) {
+                (crossings[i].place.is_rejected, found) = (true, true);
+            } else {
+                add_way(known, &crossings[i]);
+            }
+        }
+        found
+    }
+}
+
+/// Adds the normal of a contact to ways with their greatest depths.
+fn add_way(
+    ways: &mut ArrayVec<(DVec3, f64), MOST_DIRECTIONS>,
+    Crossing { normal, depth, .. }: &Crossing,
+) {
+    match ways.iter_mut().find(|(way, _)| way.dot(*normal) >= SAME_DIRECTION) {
+        Some((_, greatest)) => *greatest = greatest.max(*depth),
+        None => _ = ways.try_push((*normal, *depth)),
+    }
+}
+
+/// Returns true if a contact pushes another way than `way`, and by much more than `length`.
+fn is_longer(of: &Crossing, way: DVec3, length: f64) -> bool {
+    of.depth > MUCH_LONGER * length && way.dot(of.normal) < SAME_SIDE
+}
