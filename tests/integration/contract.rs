@@ -12,8 +12,8 @@ type MarkedPair = Pair<Marker, Marker>;
 type MarkedManifold = ContactManifold<Marker, Marker>;
 
 impl MarkedPair {
-    /// Gives each manifold and each point another mark; mark 0 is left for new ones. Returns what is
-    /// marked.
+    /// Gives each manifold and each point another mark; mark 0 is left for new ones. Returns the
+    /// marked manifolds.
     fn mark(&mut self) -> Vec<MarkedManifold> {
         let mut next = 1..;
         for manifold in &mut self.manifolds {

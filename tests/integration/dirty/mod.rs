@@ -66,7 +66,7 @@ fn prepared_world(shapes: &[&SharedShape], is_prepared: bool) -> (PhysicsWorld, 
     (world_of([], dispatcher), prepared)
 }
 
-/// Each of these, with all flags of a run.
+/// Returns each item with all flags of a run.
 fn with_flags<T: Clone>(
     items: impl IntoIterator<Item = T>,
 ) -> impl Iterator<Item = (TriMeshFlags, T)> {

@@ -1,11 +1,11 @@
-//! Tells on which side of a sheet a body is that crosses or has passed the sheet, and on which side of the walls of a room.
+//! Tells on which side of a sheet a body is, and whether a body is in a room.
 //!
 //! A sheet has two sides, and a body that crosses it leaves to the side of its middle. The nearest point of the sheet
 //! to the middle tells that side for all triangles, so they agree on wavy grounds. A body whose middle is a little
 //! behind the sheet may come from either side. The contacts of the triangles then hold it, as they push both ways.
 //!
-//! The part of a sheet beyond another sheet would be pushed farther. Triangles of that part are neighbours of triangles
-//! that cross. Their contacts push against the contacts of the crossing triangles.
+//! The part of a sheet beyond another sheet would be pushed farther. Its triangles are found from neighbour to
+//! neighbour, from the crossing ones on. Their contacts push against the contacts of the crossing triangles.
 //!
 //! A mesh inside a larger one is in a room, or in a solid that pushes it out.
 
