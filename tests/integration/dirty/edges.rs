@@ -24,17 +24,22 @@ fn open_block() -> Mesh {
     block
 }
 
+/// Flat bodies, and a round one.
+fn bodies(half: Vec3, round: (&'static str, SharedShape)) -> [(&'static str, SharedShape); 4] {
+    [
+        ("cuboid", SharedShape::cuboid(half.x, half.y, half.z)),
+        ("cylinder", SharedShape::cylinder(half.y, half.x)),
+        round,
+        ("mesh", mesh::cuboid(half, 1).shape()),
+    ]
+}
+
 /// Bodies that come in over an edge of a block. Would catch an edge with a T-junction that counts as a border, and contacts
 /// along the face beside an edge that stop bodies above it.
 #[test]
 fn bodies_over_an_edge_of_a_block_touch_nothing() {
     let half = Vec3::new(0.1, 0.05, 0.08);
-    let bodies = [
-        ("cuboid", SharedShape::cuboid(half.x, half.y, half.z)),
-        ("cylinder", SharedShape::cylinder(half.y, half.x)),
-        ("ball", SharedShape::ball(half.y)),
-        ("mesh", mesh::cuboid(half, 1).shape()),
-    ];
+    let bodies = bodies(half, ("ball", SharedShape::ball(half.y)));
     let every = every();
     let mut count = 0;
     let sides = (0..12).flat_map(|triangle| [0, 1, 2].map(|edge| (triangle, edge)));
@@ -63,12 +68,7 @@ fn bodies_over_an_edge_of_a_block_touch_nothing() {
 #[test]
 fn bodies_sunk_in_a_block_do_not_meet_the_wall_below_its_edge() {
     let half = Vec3::new(0.1, 0.05, 0.08);
-    let bodies = [
-        ("cuboid", SharedShape::cuboid(half.x, half.y, half.z)),
-        ("cylinder", SharedShape::cylinder(half.y, half.x)),
-        ("cone", SharedShape::cone(half.y, half.x)),
-        ("mesh", mesh::cuboid(half, 1).shape()),
-    ];
+    let bodies = bodies(half, ("cone", SharedShape::cone(half.y, half.x)));
     let (every, mut random, mut count) = (every(), Rand32::new(11), 0);
     let blocks = [1, 4].map(|cells| mesh::cuboid(Vec3::new(1.0, 0.5, 1.0), cells).shape());
     for i in 0..300 {

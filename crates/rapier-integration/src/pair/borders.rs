@@ -8,7 +8,6 @@
 //! of each. But the normals of walls lead against each other, so no way is left, and the rim carries the lid.
 
 use glamx::DVec3;
-
 use sbbk_core::contact::TriangleContact;
 
 use super::query::ContactList;

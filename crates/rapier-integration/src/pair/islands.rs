@@ -293,14 +293,15 @@ impl OverlapIslands {
     }
 
     /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
-    /// the wrong way. `separation`: direction in which mesh 2 separates, if known. `small`: depth of bodies at rest. `overlap` returns the overlap
-    /// of two triangles along a direction, and `ends` tells if both surfaces end where that overlap does.
+    /// the wrong way. `separation`: direction in which mesh 2 separates, if known. `small`: depth of bodies at rest.
+    /// `overlap` returns the overlap of two triangles along a direction. `parts` tells if a way of a length parts two
+    /// triangles, and both surfaces end there.
     pub(super) fn finish_first_pass(
         &mut self,
         separation: Option<DVec3>,
         small: f64,
         overlap: impl Fn([u32; 2], DVec3) -> Overlap,
-        ends: impl Fn([u32; 2], DVec3) -> bool,
+        parts: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
         self.reject_far_sides();
         self.separation = separation;
@@ -311,15 +312,16 @@ impl OverlapIslands {
         let pushes_to = |side: f64| self.crossings.iter().any(|crossing| crossing.side() == side);
         let has_both_sides = pushes_to(1.0) && pushes_to(-1.0);
         let is_good = |crossing: &Crossing| crossing.is_fine() && crossing.far_depth() == 0.0;
-        let is_all_good = !has_both_sides && self.crossings.iter().all(is_good);
+        let are_good = |all: &[Crossing]| !has_both_sides && all.iter().all(is_good);
         self.one_ways.clear();
-        if is_all_good && self.are_within(SAME_SIDE) {
+        if are_good(&self.crossings) && self.are_within(SAME_SIDE) {
             self.note_one_way(small);
             return false;
         }
         self.join();
-        let is_one_way = self.keep_one_way(small, &overlap, &ends);
-        if !(self.reject_longer(&overlap, ends) || is_one_way) && is_all_good {
+        self.keep_one_way(small, &parts);
+        self.reject_longer(parts);
+        if are_good(&self.crossings) {
             return false;
         }
         if self.find_unserved(overlap) {

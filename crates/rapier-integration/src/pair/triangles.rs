@@ -11,6 +11,8 @@
 //! another field, scale or flag is noticed at once. A removed triangle is noticed when the pair moves, and an added one at the
 //! next descent.
 
+mod overlaps;
+
 use std::cell::Cell;
 use std::sync::OnceLock;
 use std::thread::LocalKey;
@@ -23,16 +25,16 @@ use sbbk_core::traverse::{DescentCounts, SlackLimits};
 use sbbk_core::tree::Tree;
 
 use super::borders::meet_borders;
-use super::deep::{self, ContourMemory};
+use super::deep::ContourMemory;
 use super::descents::{ChunkResult, DescentMemory, in_chunks};
 use super::field::{Field, FieldToken};
-use super::islands::{ALIKE, Overlap, OverlapIslands, SAME_SIDE};
+use super::islands::OverlapIslands;
 use super::pose::{Moving, PairPose};
 use super::query::{Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery};
 use super::reduce::{ContactSummary, PatchPlan};
 use super::shapes::{
-    ContactSource, FieldShape, Hint, LIP, MeshShape, NEARLY_TOUCHING, Room, TriangleHit,
-    TriangleShape, TriangleShapes, TriangleSurfaceContact, contact_of, filter_distance,
+    ContactSource, FieldShape, Hint, MeshShape, NEARLY_TOUCHING, Room, TriangleHit, TriangleShape,
+    TriangleShapes, TriangleSurfaceContact, contact_of, filter_distance,
 };
 use super::sides::{HeldMesh, InsideTest, PassedTriangles};
 use super::surface::{SurfaceFilter, Verdict};
@@ -50,10 +52,6 @@ const LEAST_CANDIDATES: usize = 256;
 
 /// Share of the least distance below which a distance is less. Higher: rounding decides where triangles have equal distances.
 const NEARER: f64 = 0.999;
-
-/// Least cosine between a face and a direction that leads out of it rather than along it. Higher: deep boxes get contacts with the
-/// sides; lower: bodies in sockets lose contacts.
-const OUT_OF_FACE: f64 = 0.7;
 
 /// A query about two shapes made of triangles.
 pub(crate) struct TriangleQuery<'q> {
@@ -310,10 +308,7 @@ impl PairQuery for TriangleQuery<'_> {
         }
         let lead_one_way = meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
-        let overlap = |pair: [u32; 2], way: DVec3| self.overlap(pair, way);
-        let ends = |pair: [u32; 2], way: DVec3| self.ends_along(pair, way);
-        let small = LIP * self.shapes.filter_unit();
-        if islands.finish_first_pass(separation, small, overlap, ends) {
+        if self.finish_first_pass(islands, separation) {
             self.second_pass(islands, contours, clipped, contacts);
         }
         self.drop_lifted(islands.one_ways(), contacts);
@@ -458,48 +453,6 @@ impl TriangleQuery<'_> {
         contacts.extend(may_touch.filter_map(contact).filter(is_near));
     }
 
-    /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
-    fn drop_lifted(
-        &self,
-        ways: &[(DVec3, f64)],
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
-            let is_lifted = |(way, depth): &(DVec3, f64)| {
-                let height = || self.overlap(*pair, *way).length;
-                way.dot(contact.normal).abs() < SAME_SIDE
-                    && (0.0..=ALIKE * depth).contains(&height())
-                    && self.ends_along(*pair, *way)
-            };
-            contact.distance <= 0.0 || !ways.iter().any(is_lifted)
-        });
-    }
-
-    /// Adds the contacts of crossing triangles if all contacts are apart, as these do not part the triangles.
-    fn part_crossing(
-        &self,
-        islands: &OverlapIslands,
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        let is_crossing = islands.crossings.iter().any(|crossing| crossing.is_crossing);
-        let is_apart = |(_, hit): &TriangleHit| hit.contact.distance > 0.0;
-        if is_crossing && !contacts.is_empty() && contacts.iter().all(is_apart) {
-            contacts.extend(self.of_overlaps(islands));
-            contacts.sort_unstable_by_key(|(pair, _)| *pair);
-        }
-    }
-
-    /// Returns the contacts of the triangles of all overlaps.
-    fn of_overlaps(&self, islands: &OverlapIslands) -> impl Iterator<Item = TriangleHit> {
-        let within = f64::from(self.shapes.pose.prediction);
-        islands.overlaps().filter_map(move |pair| self.shapes.nearest_points(pair, within))
-    }
-
-    /// Returns true if both surfaces end where the overlap of two triangles along a direction does.
-    fn ends_along(&self, pair: [u32; 2], way: DVec3) -> bool {
-        self.shapes.with_filter(pair, |filter| filter.ends_along(way)).unwrap_or(false)
-    }
-
     /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.
     fn add_passing(&self, first: &mut FirstPass) {
         let FirstPass { contacts, upright, passing, islands, clipped, .. } = first;
@@ -522,47 +475,6 @@ impl TriangleQuery<'_> {
             contacts.sort_by_key(|(pair, _)| *pair);
             upright.sort_by_key(|(pair, _)| *pair);
         }
-    }
-
-    /// Returns the overlap of two triangles along a direction in which triangle 2 leaves.
-    fn overlap(&self, pair: [u32; 2], way: DVec3) -> Overlap {
-        let Some(local) = self.shapes.local(pair) else {
-            return Overlap { length: 0.0, leads_out: false };
-        };
-        let heights = local.corners.map(|corners| corners.map(|corner| corner.dot(way)));
-        let highest = heights[0].into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let lowest = heights[1].into_iter().fold(f64::INFINITY, f64::min);
-        let leads_out = |[a, b, c]: [DVec3; 3]| {
-            let area = (b - a).cross(c - a);
-            area.dot(way).abs() > OUT_OF_FACE * area.length()
-        };
-        let leads_out = local.corners.into_iter().any(leads_out);
-        Overlap { length: highest - lowest, leads_out }
-    }
-
-    /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too few.
-    #[inline(never)]
-    fn second_pass(
-        &self,
-        islands: &mut OverlapIslands,
-        contours: &mut ContourMemory,
-        clipped: &mut ManifoldPoints,
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        contacts.retain(|(pair, _)| islands.is_final(*pair));
-        deep::add_contacts(&self.shapes, islands, contours, contacts);
-        deep::remove_farther(&self.shapes, islands, contacts);
-        for i in 0..islands.crossings.len() {
-            let Some(crossing) = islands.open(i) else { continue };
-            let Some(support) = islands.open_support(&crossing) else { continue };
-            let contact = self.shapes.with_filter(crossing.pair, |filter| {
-                filter.supporting_contact(&crossing, support, clipped)
-            });
-            contacts.extend(contact.flatten().map(|contact| (crossing.pair, contact)));
-        }
-        // Contacts of contours come first.
-        contacts.sort_unstable_by_key(|(pair, hit)| (*pair, hit.source != ContactSource::PushOut));
-        contacts.dedup_by_key(|(pair, _)| *pair);
     }
 }
 

@@ -12,8 +12,8 @@
 //! A ghost takes the normal of the nearest triangle at its edge or vertex. The nearest contact may be a
 //! ghost as well. Distances fall along this chain, so the chain ends.
 //!
-//! The tip of a crossing shape may be less deep behind both triangles at an edge than in the solid. This is so if a triangle at the edge extends beyond the contact along its
-//! normal. The contact then takes the normal of a face nearby that the shape crosses, if there is one.
+//! The tip of a crossing shape may be less deep behind both triangles at an edge than in the solid. This is so if a
+//! triangle at the edge extends beyond the contact along its normal. The contact then takes the normal of a face nearby that the shape crosses, if there is one.
 //!
 //! A thin shape that cuts a sharp edge has its end far from the planes of both faces. Two less deep ways
 //! part it from the triangle as well, and the least deep one counts:

@@ -289,10 +289,10 @@ impl ConvexQuery<'_> {
             let has_way_out = contacts.iter().any(|hit| leads_out(hit, scratch));
             contacts.retain(|hit @ (of, PartContact { contact, .. })| {
                 let [triangle, part] = self.pair.mesh_place.swap(*of);
-                let leads_in =
-                    (has_way_out || contact.distance > 0.0) && self.leads_in(surface, hit, scratch);
-                let is_within = surface.around(triangle).side == Side::Inner;
-                !(leads_in || is_within) || {
+                let is_ghost = surface.around(triangle).side == Side::Inner
+                    || (has_way_out || contact.distance > 0.0)
+                        && self.leads_in(surface, hit, scratch);
+                !is_ghost || {
                     let known = last.filter(|(of, _)| *of == part);
                     let within = || (part, self.is_middle_within(surface, part, scratch));
                     last.insert(known.unwrap_or_else(within)).1

@@ -6,7 +6,7 @@
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
-use super::{ALIKE, Crossing, MOST_DIRECTIONS, Overlap, OverlapIslands, SAME_DIRECTION, SAME_SIDE};
+use super::{Crossing, MOST_DIRECTIONS, OverlapIslands, SAME_DIRECTION, SAME_SIDE};
 
 /// Ratio of depths from which a shorter way out of an island is looked for. Higher: edges that cross push each other aside. Lower:
 /// more time for bodies in each other.
@@ -28,13 +28,12 @@ impl OverlapIslands {
         }
     }
 
-    /// Rejects contacts that push aside where one way parts all pairs of the island at a `small` depth. Returns true if there are any.
+    /// Rejects contacts that push aside where one way parts all pairs of the island at a `small` depth.
     pub(super) fn keep_one_way(
         &mut self,
         small: f64,
-        overlap: impl Fn([u32; 2], DVec3) -> Overlap,
-        ends: impl Fn([u32; 2], DVec3) -> bool,
-    ) -> bool {
+        parts: impl Fn([u32; 2], DVec3, f64) -> bool,
+    ) {
         let Self { crossings, ways, one_ways, .. } = self;
         ways.clear();
         for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
@@ -43,11 +42,10 @@ impl OverlapIslands {
         for &Crossing { pair, normal, place, .. } in &*crossings {
             let Some(known) = ways.get_mut(&place.island) else { continue };
             known.retain(|(way, depth)| {
-                let parts = || overlap(pair, *way).length <= ALIKE * *depth && ends(pair, *way);
-                *depth <= small && (way.dot(normal) >= SAME_DIRECTION || parts())
+                let is_own = way.dot(normal) >= SAME_DIRECTION;
+                *depth <= small && (is_own || parts(pair, *way, *depth))
             });
         }
-        let mut found = false;
         for (index, Crossing { normal, place, .. }) in crossings.iter_mut().enumerate() {
             let least = ways
                 .get(&place.island)
@@ -56,11 +54,8 @@ impl OverlapIslands {
             if place.island == index {
                 one_ways.push((way, depth));
             }
-            let is_other = way.dot(*normal) < SAME_SIDE;
-            place.is_rejected |= is_other;
-            found |= is_other;
+            place.is_rejected |= way.dot(*normal) < SAME_SIDE;
         }
-        found
     }
 
     /// Returns the ways that part all pairs of an island at a small depth, and the depths.
@@ -68,34 +63,29 @@ impl OverlapIslands {
         &self.one_ways
     }
 
-    /// Rejects contacts of pairs that another contact of their island separates by a shorter way, and returns true if there are
-    /// any. A pair knows only the ways across its own faces and edges.
-    pub(super) fn reject_longer(
-        &mut self,
-        overlap: impl Fn([u32; 2], DVec3) -> Overlap,
-        ends: impl Fn([u32; 2], DVec3) -> bool,
-    ) -> bool {
+    /// Rejects contacts of pairs that another contact of their island parts by a shorter way.
+    pub(super) fn reject_longer(&mut self, parts: impl Fn([u32; 2], DVec3, f64) -> bool) {
         let Self { crossings, ways, by_depth, .. } = self;
         ways.clear();
         by_depth.clear();
         by_depth.extend((0..crossings.len()).filter(|&i| crossings[i].is_fine()));
-        by_depth.sort_by(|&a, &b| crossings[a].depth.total_cmp(&crossings[b].depth));
-        let mut found = false;
+        by_depth.sort_unstable_by(|a, b| {
+            crossings[*a].depth.total_cmp(&crossings[*b].depth).then(a.cmp(b))
+        });
         for &i in &*by_depth {
-            let Crossing { pair, place, .. } = crossings[i];
+            let Crossing { pair, normal, depth, place, .. } = crossings[i];
             let known = ways.entry(place.island).or_default();
-            let parts = |&(way, length): &(DVec3, f64)| {
-                overlap(pair, way).length <= ALIKE * length && ends(pair, way)
+            let is_shorter = |(way, length): &(DVec3, f64)| {
+                depth > MUCH_LONGER * length
+                    && way.dot(normal) < SAME_SIDE
+                    && parts(pair, *way, *length)
             };
-            let mut shorter =
-                known.iter().filter(|(way, length)| is_longer(&crossings[i], *way, *length));
-            if shorter.any(parts) {
-                (crossings[i].place.is_rejected, found) = (true, true);
+            if known.iter().any(is_shorter) {
+                crossings[i].place.is_rejected = true;
             } else {
                 add_way(known, &crossings[i]);
             }
         }
-        found
     }
 }
 
@@ -108,9 +98,4 @@ fn add_way(
         Some((_, greatest)) => *greatest = greatest.max(*depth),
         None => _ = ways.try_push((*normal, *depth)),
     }
-}
-
-/// Returns true if a contact pushes another way than `way`, and by much more than `length`.
-fn is_longer(of: &Crossing, way: DVec3, length: f64) -> bool {
-    of.depth > MUCH_LONGER * length && way.dot(of.normal) < SAME_SIDE
 }

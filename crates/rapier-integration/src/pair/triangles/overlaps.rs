@@ -1,0 +1,120 @@
+//! Contacts of meshes that overlap, after the first pass.
+
+use std::ops::RangeBounds;
+
+use glamx::DVec3;
+use sbbk_core::contact::ManifoldPoints;
+
+use super::TriangleQuery;
+use crate::pair::deep::{self, ContourMemory};
+use crate::pair::islands::{ALIKE, Overlap, OverlapIslands, SAME_SIDE};
+use crate::pair::query::ContactList;
+use crate::pair::shapes::{ContactSource, LIP, TriangleHit, TriangleSurfaceContact};
+use crate::pair::surface::SurfaceFilter;
+
+/// Least cosine between a face and a direction that leads out of it rather than along it. Higher: deep boxes get contacts with the
+/// sides; lower: bodies in sockets lose contacts.
+const OUT_OF_FACE: f64 = 0.7;
+
+impl TriangleQuery<'_> {
+    /// Ends the first pass. Returns true if a second pass is needed.
+    pub(super) fn finish_first_pass(
+        &self,
+        islands: &mut OverlapIslands,
+        separation: Option<DVec3>,
+    ) -> bool {
+        let small = LIP * self.shapes.filter_unit();
+        let overlap = |pair: [u32; 2], way: DVec3| self.overlap(pair, way);
+        let parts = |pair: [u32; 2], way: DVec3, length: f64| {
+            self.ends_within(pair, way, ..=ALIKE * length)
+        };
+        islands.finish_first_pass(separation, small, overlap, parts)
+    }
+
+    /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
+    pub(super) fn drop_lifted(
+        &self,
+        ways: &[(DVec3, f64)],
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
+            let is_lifted = |(way, depth): &(DVec3, f64)| {
+                way.dot(contact.normal).abs() < SAME_SIDE
+                    && self.ends_within(*pair, *way, 0.0..=ALIKE * depth)
+            };
+            contact.distance <= 0.0 || !ways.iter().any(is_lifted)
+        });
+    }
+
+    /// Adds the contacts of crossing triangles if all contacts are apart, as these do not part the triangles.
+    pub(super) fn part_crossing(
+        &self,
+        islands: &OverlapIslands,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        let is_crossing = islands.crossings.iter().any(|crossing| crossing.is_crossing);
+        let is_apart = |(_, hit): &TriangleHit| hit.contact.distance > 0.0;
+        if is_crossing && !contacts.is_empty() && contacts.iter().all(is_apart) {
+            contacts.extend(self.of_overlaps(islands));
+            contacts.sort_unstable_by_key(|(pair, _)| *pair);
+        }
+    }
+
+    /// Returns the contacts of the triangles of all overlaps.
+    pub(super) fn of_overlaps(
+        &self,
+        islands: &OverlapIslands,
+    ) -> impl Iterator<Item = TriangleHit> {
+        let within = f64::from(self.shapes.pose.prediction);
+        islands.overlaps().filter_map(move |pair| self.shapes.nearest_points(pair, within))
+    }
+
+    /// Returns true if the overlap of two triangles along a direction is within a range, and both surfaces end where the overlap
+    /// does.
+    fn ends_within(&self, pair: [u32; 2], way: DVec3, range: impl RangeBounds<f64>) -> bool {
+        let ends = |filter: &SurfaceFilter<'_>| filter.ends_along(way);
+        range.contains(&self.overlap(pair, way).length)
+            && self.shapes.with_filter(pair, ends) == Some(true)
+    }
+
+    /// Returns the overlap of two triangles along a direction in which triangle 2 leaves.
+    fn overlap(&self, pair: [u32; 2], way: DVec3) -> Overlap {
+        let Some(local) = self.shapes.local(pair) else {
+            return Overlap { length: 0.0, leads_out: false };
+        };
+        let heights = local.corners.map(|corners| corners.map(|corner| corner.dot(way)));
+        let highest = heights[0].into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let lowest = heights[1].into_iter().fold(f64::INFINITY, f64::min);
+        let leads_out = |[a, b, c]: [DVec3; 3]| {
+            let area = (b - a).cross(c - a);
+            area.dot(way).abs() > OUT_OF_FACE * area.length()
+        };
+        let leads_out = local.corners.into_iter().any(leads_out);
+        Overlap { length: highest - lowest, leads_out }
+    }
+
+    /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too few.
+    #[inline(never)]
+    pub(super) fn second_pass(
+        &self,
+        islands: &mut OverlapIslands,
+        contours: &mut ContourMemory,
+        clipped: &mut ManifoldPoints,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        contacts.retain(|(pair, _)| islands.is_final(*pair));
+        deep::add_contacts(&self.shapes, islands, contours, contacts);
+        deep::remove_farther(&self.shapes, islands, contacts);
+        for i in 0..islands.crossings.len() {
+            let Some(crossing) = islands.open(i) else { continue };
+            let Some(support) = islands.open_support(&crossing) else { continue };
+            let contact = self.shapes.with_filter(crossing.pair, |filter| {
+                filter.supporting_contact(&crossing, support, clipped)
+            });
+            contacts.extend(contact.flatten().map(|contact| (crossing.pair, contact)));
+        }
+        // Contacts of contours come first.
+        contacts.sort_unstable_by_key(|(pair, hit)| (*pair, hit.source != ContactSource::PushOut));
+        contacts.dedup_by_key(|(pair, _)| *pair);
+    }
+}
