@@ -89,28 +89,32 @@ fn bodies_sunk_in_a_block_do_not_meet_the_wall_below_its_edge() {
     assert!(count > 1000, "{count} contacts");
 }
 
-/// Flat meshes that are sunk in two blocks and reach over the gap between these, so that the far wall is near. Would catch contacts
+/// Flat bodies that are sunk in two blocks and reach over the gap between these, so that the far wall is near. Would catch contacts
 /// with the far wall. Such contacts stop bodies that slide over the gap.
 #[test]
-fn meshes_over_a_gap_do_not_meet_its_far_wall() {
+fn bodies_over_a_gap_do_not_meet_its_far_wall() {
     let profile = [[0.0, -0.1], [0.3, -0.1], [0.3, 0.1], [0.0, 0.1]].map(Vec2::from);
-    let disc = mesh::revolved(&profile, 24);
-    let bodies = [mesh::cuboid(Vec3::new(0.3, 0.1, 0.2), 2), disc];
-    let bodies = bodies.map(|body| body.shape());
+    let bodies = [
+        mesh::cuboid(Vec3::new(0.3, 0.1, 0.2), 2).shape(),
+        mesh::revolved(&profile, 24).shape(),
+        SharedShape::cuboid(0.3, 0.1, 0.2),
+        SharedShape::cylinder(0.1, 0.3),
+        SharedShape::cone(0.1, 0.3),
+    ];
     let block =
         |cells: u32, x: Real| mesh::cuboid(Vec3::splat(0.5), cells).mapped(|v| v + x * Vec3::X);
     let grounds = [1, 3]
         .map(|cells| Mesh::merged("gap", &[block(cells, -0.525), block(cells, 0.525)]).shape());
     let (every, mut random) = (every(), Rand32::new(12));
     let (mut count, mut aside) = (0, 0);
-    for i in 0..1000 {
+    for i in 0..2500 {
         let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
         let turn = Quat::from_rotation_y(within(-PI, PI));
-        let body = &bodies[i % 2];
+        let body = &bodies[i % bodies.len()];
         let reach = body.compute_aabb(&Pose::from_rotation(turn)).maxs.x;
         let over = 0.025 - reach + within(-0.01, 0.001);
         let place = Vec3::new(over, 0.6 - within(2e-4, 2e-3), within(-0.2, 0.2));
-        let ground = &grounds[i / 2 % 2];
+        let ground = &grounds[i / bodies.len() % 2];
         let found =
             Question::new(&*ground.0, &*body.0, Pose::from_parts(place, turn)).fresh(&every);
         count += found.len();
@@ -118,4 +122,51 @@ fn meshes_over_a_gap_do_not_meet_its_far_wall() {
     }
     println!("{aside} of {count} aside");
     assert!(count > 1000 && 1000 * aside <= count, "{aside} of {count} aside");
+}
+
+/// A block that goes down by a step at x = 0, and its ground alone.
+fn step_down(height: Real) -> [Mesh; 2] {
+    // All of the outline is seen from the origin.
+    let middle = Vec2::new(1.0, 0.5);
+    let outline =
+        [[2.0, -height], [0.0, -height], [0.0, 0.0], [-2.0, 0.0], [-2.0, -1.0], [2.0, -1.0]];
+    let outline = outline.map(|[x, y]| [x.min(1.9), y]).map(|point| Vec2::from(point) + middle);
+    let solid = mesh::prism(&outline, 1.0).mapped(|v| v - middle.extend(0.0));
+    let mut sheet = solid.clone();
+    sheet.triangles.retain(|corners| {
+        let [a, b, c] = corners.map(|corner| solid.vertices[corner as usize]);
+        let is_end = a.z == b.z && b.z == c.z;
+        !is_end && [a, b, c].iter().all(|corner| corner.y > -0.75)
+    });
+    [solid, sheet]
+}
+
+/// Bodies at the height of the upper of two floors, less than a prediction distance before the edge between these. Would catch contacts
+/// with the foot of the step, or with the back of its riser. Such contacts stop bodies that slide over the edge.
+#[test]
+fn bodies_before_a_step_down_meet_neither_its_foot_nor_its_riser() {
+    let bodies = bodies(Vec3::new(0.25, 0.15, 0.2), ("cone", SharedShape::cone(0.15, 0.25)));
+    let (every, mut random, mut count) = (every(), Rand32::new(13), 0);
+    for i in 0..400 {
+        let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
+        let height = [within(5e-4, 1e-2), within(0.05, 0.5)][i % 2];
+        let (gap, sunk, z) = (within(0.0, 0.009), within(-5e-4, 5e-4), within(-0.3, 0.3));
+        let turn = Quat::from_rotation_y(within(-PI, PI));
+        for (is_sheet, ground) in step_down(height).map(|ground| ground.shape()).iter().enumerate()
+        {
+            for (name, body) in &bodies {
+                // The foot of a sheet has no side, and meshes may still meet it.
+                if is_sheet == 1 && *name == "mesh" {
+                    continue;
+                }
+                let reach = body.compute_aabb(&Pose::from_rotation(turn)).maxs.x;
+                let pose = Pose::from_parts(Vec3::new(-gap - reach, 0.15 - sunk, z), turn);
+                let found = Question::new(&*ground.0, &*body.0, pose).fresh(&every);
+                let least = found.iter().map(|manifold| manifold.local_n1.x).reduce(Real::min);
+                assert!(least.is_some_and(|x| x > -0.3), "{name} at {pose:?}, {height}: {least:?}");
+                count += found.len();
+            }
+        }
+    }
+    assert!(count > 1000, "{count} contacts");
 }

@@ -9,10 +9,11 @@ use glamx::DVec3;
 use parry3d::query::Ray;
 use sbbk_core::query::TrianglePair;
 
-use super::islands::{ALIKE, IslandWay, OverlapIslands, SAME_SIDE, Unsupported};
+use super::islands::{IslandWay, OverlapIslands, Unsupported};
 use super::pose::PairPose;
 use super::query::ContactList;
 use super::shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
+use super::ways::{ALIKE, SAME_SIDE};
 
 /// Least cosine between the area vector of a contour and a shorter way out. Higher: boxes leave boxes at a slant. Lower:
 /// contacts of several contours push against each other.

@@ -1,8 +1,9 @@
-use arrayvec::ArrayVec;
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
 use sbbk_core::collections::UnionFind;
 use sbbk_core::contact::DoubleCone;
+
+use super::ways::{SAME_DIRECTION, SAME_SIDE, Ways};
 
 /// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
 /// contacts that push each island apart.
@@ -16,8 +17,8 @@ pub(crate) struct OverlapIslands {
     pub(super) separation: Option<DVec3>,
     /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
     deepest: Vec<(DVec3, f64)>,
-    /// Normals of the reliable contacts of each island, one for each direction, and how far these push the shapes.
-    ways: FxHashMap<usize, ArrayVec<(DVec3, f64), MOST_DIRECTIONS>>,
+    /// Ways of the reliable contacts, by island.
+    ways: Ways,
     /// Crossings, and then the pairs that touch, by index.
     islands: UnionFind,
     /// A pair with each triangle.
@@ -234,22 +235,6 @@ const SAME_WAY: f64 = 0.9999;
 /// aside. Lower: more time for bodies in each other.
 const FAR: f64 = 0.5;
 
-/// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor let go. Lower: edges that cross push
-/// each other aside.
-pub(super) const ALIKE: f64 = 1.1;
-
-/// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
-/// lower: contacts that do not push against each other are rejected.
-pub(super) const SAME_SIDE: f64 = 0.5;
-
-/// Cosine above which two normals of a triangle's contacts are one direction. Higher: a triangle that
-/// many others cross takes longer; lower: directions that push against each other are confused.
-const SAME_DIRECTION: f64 = 0.99;
-
-/// Directions of reliable contacts that are remembered for an island. Higher: slower where many differ. Lower: second
-/// passes for pairs that a contact separates.
-const MOST_DIRECTIONS: usize = 16;
-
 impl OverlapIslands {
     /// Begins the first pass of a query.
     pub(super) fn clear(&mut self) {
@@ -359,24 +344,24 @@ impl OverlapIslands {
         let Self { crossings, ways, .. } = self;
         ways.clear();
         for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
-            let known = ways.entry(crossing.place.island).or_default();
+            let known = ways.of(crossing.place.island);
             if known.iter().all(|(way, _)| way.dot(crossing.normal) < SAME_DIRECTION) {
                 // Pairs that need a way beyond the limit get a closer look.
                 let _ = known.try_push((crossing.normal, crossing.greatest));
             }
         }
         for Crossing { pair, place, .. } in &*crossings {
-            for (way, length) in ways.get_mut(&place.island).into_iter().flatten() {
+            for (way, length) in ways.of(place.island) {
                 let overlap = overlap(*pair, *way);
                 *length = length.max(if overlap.leads_out { overlap.length } else { 0.0 });
             }
         }
         let mut found = false;
         for crossing in crossings.iter_mut().filter(|crossing| !crossing.is_fine()) {
-            let Some(known) = ways.get(&crossing.place.island) else { continue };
             let is_longer =
                 |(way, length): &(DVec3, f64)| overlap(crossing.pair, *way).length > *length;
-            crossing.place.is_unserved = known.iter().all(is_longer);
+            let known = ways.of(crossing.place.island);
+            crossing.place.is_unserved = !known.is_empty() && known.iter().all(is_longer);
             found |= crossing.place.is_unserved;
         }
         found
@@ -509,7 +494,7 @@ fn leads_apart(normal: DVec3, separation: Option<DVec3>) -> bool {
     separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
 }
 
-mod ways;
+mod one_way;
 
 #[cfg(test)]
 mod tests;

@@ -18,6 +18,7 @@ mod surface;
 mod triangle_contacts;
 mod triangles;
 mod update;
+mod ways;
 mod write;
 
 pub(crate) use convex::{

@@ -36,7 +36,7 @@ pub(super) const FILTERED: Real = 0.1;
 
 /// [`PatchPlan::equal_depth`] as a share of the prediction distance. Higher: points that hover replace points that carry, and
 /// bodies rock; lower: thin plates turn through what they hit.
-const EQUAL_DEPTH: Real = 0.02;
+pub(super) const EQUAL_DEPTH: Real = 0.02;
 
 /// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a step, so
 /// [`PatchPlan::equal_depth`] grows with the square of their ratio. Higher: cones on uneven ground stay awake. Lower: coins stand on

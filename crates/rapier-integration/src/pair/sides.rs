@@ -19,13 +19,14 @@ use sbbk_core::surface::{Facets, SurfaceKind};
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
-use super::islands::{Crossing, OverlapIslands, SAME_SIDE};
+use super::islands::{Crossing, OverlapIslands};
 use super::pose::PairPose;
 use super::query::ContactList;
 use super::shapes::{
     ContactSource, LIP, MeshShape, NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape,
     TriangleShapes, TriangleSurfaceContact, filter_distance, filter_unit,
 };
+use super::ways::SAME_SIDE;
 use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
 
 /// Greatest depth of a body's middle behind a sheet that still pushes it to the front, in half

@@ -18,11 +18,12 @@ use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleCon
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
-use super::islands::{Crossing, IslandPlace, SAME_SIDE, SheetSide, Support};
+use super::islands::{Crossing, IslandPlace, SheetSide, Support};
 use super::shapes::{
     ContactSource, DISTANT, LIP, NEAR_NORMAL, OverSheet, ShapeFacets, TriangleShapes,
     TriangleSurfaceContact,
 };
+use super::ways::SAME_SIDE;
 use crate::mesh::BEHIND;
 
 /// Greatest depth of a contact of the first pass, in least translations of its triangles or, if

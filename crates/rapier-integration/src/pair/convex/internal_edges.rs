@@ -21,7 +21,7 @@ const LINEAR_SEARCH: usize = 64;
 
 impl ConvexQuery<'_> {
     /// Calls `found` with the contacts of other triangles within `seam` of a place on the mesh.
-    fn strays_at(
+    pub(super) fn strays_at(
         &self,
         contacts: &[([u32; 2], PartContact)],
         of: [u32; 2],

@@ -5,7 +5,7 @@
 //! * [`contact`]: the exact contact of a triangle and a part.
 //! * [`triangle_part`], [`points`]: write a contact to a manifold.
 //! * [`pair`]: a mesh and its parts. [`query`]: the contact query.
-//! * [`ghosts`], [`internal_edges`]: correct contacts at internal edges. [`push_out`]: moves parts out of solids.
+//! * [`ghosts`], [`internal_edges`]: correct contacts at internal edges. [`walls`]: removes contacts with walls that are not in the way. [`push_out`]: moves parts out of solids.
 //! * [`search`], [`cast`]: queries without manifolds.
 
 mod cast;
@@ -21,6 +21,7 @@ mod query;
 mod search;
 mod shape;
 mod triangle_part;
+mod walls;
 
 pub(crate) use cast::FoundCast;
 pub(crate) use pair::ConvexPair;

@@ -4,31 +4,27 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::thread::LocalKey;
 
-use glamx::{DVec3, Vec3};
+use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::surface::{Side, SurfaceKind};
 use sbbk_core::traverse::{BoxTest, DescentCounts, SlackLimits, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
-use super::contact::{PartContact, SAME_WAY, ball_contact, core_contact};
+use super::contact::{PartContact, ball_contact, core_contact};
 use super::ghosts::GhostContacts;
 use super::near::triangles_near;
 use super::pair::ConvexPair;
 use super::parts::{Part, PartData, Parts, PlacedPart};
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::mesh::{Change, LazySurface, PairMesh, is_covered};
+use super::walls::WallMemory;
+use crate::mesh::{Change, LazySurface, PairMesh};
 use crate::pair::pose::{Moving, PairPose};
 use crate::pair::query::{
     Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery, QueryMemory,
 };
 use crate::pair::reduce::{ContactSummary, PatchPlan};
-
-/// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher: bodies catch on walls behind
-/// the edge that they slide over. Lower: rounding decides about contacts along the surface.
-const TANGENTIAL: f64 = 1.0e-4;
 
 impl<'a> Pair for ConvexPair<'a> {
     /// Data of the mesh and of the parts that the candidates belong to.
@@ -69,6 +65,7 @@ pub(crate) struct ConvexScratch {
     /// Parts at the pose of the query.
     parts: Vec<Option<PlacedPart>>,
     pub(super) ghosts: GhostContacts,
+    pub(super) walls: WallMemory,
     /// Parts with the distances of their contacts, and push-outs.
     pub(super) push_outs: (Vec<(u32, f64)>, ContactList<PartContact>),
 }
@@ -226,9 +223,10 @@ impl PairQuery for ConvexQuery<'_> {
                 contacts.push((candidate.subshapes, contact));
             }
         }
-        self.drop_inner_walls(contacts, scratch);
+        self.drop_walls(contacts, scratch);
         self.add_push_outs(contacts, scratch);
         self.correct_ghosts(contacts, scratch);
+        self.keep_one_way(contacts, scratch);
     }
 
     /// Makes patches unless the mesh is soft or the shape is a ball, which has few contacts of one point.
@@ -265,61 +263,6 @@ impl PairQuery for ConvexQuery<'_> {
 }
 
 impl ConvexQuery<'_> {
-    /// Removes the contacts of triangles that have the body on both sides, and those that lead into the body. Asks for sides only
-    /// where contacts push in different directions. Parts whose middle is in a solid keep all contacts: the solid is a room, and
-    /// the triangles are of what stands there. Crossing triangles keep contacts that lead in unless another one leads out.
-    fn drop_inner_walls(
-        &self,
-        contacts: &mut ContactList<PartContact>,
-        scratch: &mut ConvexScratch,
-    ) {
-        // A ball has one point, and rolls over walls within a mesh.
-        let is_exempt = self.pair.is_ball() && !self.pair.config.leave_solids();
-        let Some(surface) = self.surface.as_ref().filter(|_| !is_exempt) else { return };
-        let mut normals =
-            contacts.iter().map(|(of, hit)| self.shared_normal(*of, &hit.contact, scratch));
-        let Some(first) = normals.next() else { return };
-        if normals.any(|normal| first.dot(normal) < SAME_WAY)
-            && surface.kind() != SurfaceKind::Sheet
-        {
-            let mut last = None;
-            let leads_out = |hit: &([u32; 2], PartContact), scratch: &mut ConvexScratch| {
-                hit.1.contact.distance < 0.0 && !self.leads_in(surface, hit, scratch)
-            };
-            let has_way_out = contacts.iter().any(|hit| leads_out(hit, scratch));
-            contacts.retain(|hit @ (of, PartContact { contact, .. })| {
-                let [triangle, part] = self.pair.mesh_place.swap(*of);
-                let is_ghost = surface.around(triangle).side == Side::Inner
-                    || (has_way_out || contact.distance > 0.0)
-                        && self.leads_in(surface, hit, scratch);
-                !is_ghost || {
-                    let known = last.filter(|(of, _)| *of == part);
-                    let within = || (part, self.is_middle_within(surface, part, scratch));
-                    last.insert(known.unwrap_or_else(within)).1
-                }
-            });
-        }
-    }
-
-    /// Returns true if a contact leads into the body behind its triangle.
-    fn leads_in(
-        &self,
-        surface: &LazySurface<'_>,
-        (of, hit): &([u32; 2], PartContact),
-        scratch: &mut ConvexScratch,
-    ) -> bool {
-        let [triangle, _] = self.pair.mesh_place.swap(*of);
-        let around = surface.around(triangle);
-        let [a, b, c] = self.pair.mesh.corners(triangle).map(Vec3::as_dvec3);
-        let inward = -around.side.outward().unwrap_or(0.0) * (b - a).cross(c - a);
-        let direction =
-            self.with_pair(*of, scratch, |pair| pair.placed.directions(hit.contact.normal)[0]);
-        direction.is_some_and(|direction| {
-            inward.dot(direction) > TANGENTIAL * inward.length()
-                && around.points_inside(triangle, hit.feature, direction)
-        })
-    }
-
     /// Returns the normal of a contact in the axes of the mesh. A single part needs no common axes and keeps its own.
     pub(super) fn shared_normal(
         &self,
@@ -334,20 +277,6 @@ impl ConvexQuery<'_> {
             .parts
             .with(part, |shape| self.placed(part, &shape, scratch).directions(contact.normal)[0]);
         turned.unwrap_or(contact.normal)
-    }
-
-    /// Returns true if the middle of a part is in a solid.
-    fn is_middle_within(
-        &self,
-        surface: &LazySurface<'_>,
-        part: u32,
-        scratch: &mut ConvexScratch,
-    ) -> bool {
-        let is_within = self.pair.parts.with(part, |shape| {
-            let middle = self.placed(part, &shape, scratch).in_mesh(shape.shape.middle()?);
-            Some(is_covered(self.pair.mesh.mesh, middle) && surface.winding_sign(middle) == Some(1))
-        });
-        is_within.flatten() == Some(true)
     }
 
     /// Returns a test for boxes around some parts: false only if all triangles are farther than `margin`.

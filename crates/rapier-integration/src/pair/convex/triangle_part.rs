@@ -308,7 +308,7 @@ impl TrianglePartPair<'_> {
     }
 
     /// Returns the rounding radius of the part.
-    fn radius(&self) -> f64 {
+    pub(super) fn radius(&self) -> f64 {
         f64::from(self.part.shape.radius())
     }
 

@@ -7,10 +7,11 @@ use sbbk_core::contact::ManifoldPoints;
 
 use super::TriangleQuery;
 use crate::pair::deep::{self, ContourMemory};
-use crate::pair::islands::{ALIKE, Overlap, OverlapIslands, SAME_SIDE};
+use crate::pair::islands::{Overlap, OverlapIslands};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, LIP, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
+use crate::pair::ways::{ALIKE, SAME_SIDE};
 
 /// Least cosine between a face and a direction that leads out of it rather than along it. Higher: deep boxes get contacts with the
 /// sides; lower: bodies in sockets lose contacts.

@@ -3,10 +3,10 @@
 //! Two crossing triangles know the ways across their own faces and edges. Another contact of their island may part them
 //! by a shorter way, if both surfaces end where the overlap along that way does.
 
-use arrayvec::ArrayVec;
 use glamx::DVec3;
 
-use super::{Crossing, MOST_DIRECTIONS, OverlapIslands, SAME_DIRECTION, SAME_SIDE};
+use super::{Crossing, OverlapIslands};
+use crate::pair::ways::{SAME_DIRECTION, SAME_SIDE};
 
 /// Ratio of depths from which a shorter way out of an island is looked for. Higher: edges that cross push each other aside. Lower:
 /// more time for bodies in each other.
@@ -37,20 +37,14 @@ impl OverlapIslands {
         let Self { crossings, ways, one_ways, .. } = self;
         ways.clear();
         for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
-            add_way(ways.entry(crossing.place.island).or_default(), crossing);
+            ways.add(crossing.place.island, crossing.normal, crossing.depth);
         }
         for &Crossing { pair, normal, place, .. } in &*crossings {
-            let Some(known) = ways.get_mut(&place.island) else { continue };
-            known.retain(|(way, depth)| {
-                let is_own = way.dot(normal) >= SAME_DIRECTION;
-                *depth <= small && (is_own || parts(pair, *way, *depth))
-            });
+            let parts = |way: DVec3, depth: f64| parts(pair, way, depth);
+            ways.keep_parting(place.island, normal, small, parts);
         }
         for (index, Crossing { normal, place, .. }) in crossings.iter_mut().enumerate() {
-            let least = ways
-                .get(&place.island)
-                .and_then(|known| known.iter().min_by(|(_, a), (_, b)| a.total_cmp(b)));
-            let Some(&(way, depth)) = least else { continue };
+            let Some((way, depth)) = ways.least(place.island) else { continue };
             if place.island == index {
                 one_ways.push((way, depth));
             }
@@ -74,28 +68,16 @@ impl OverlapIslands {
         });
         for &i in &*by_depth {
             let Crossing { pair, normal, depth, place, .. } = crossings[i];
-            let known = ways.entry(place.island).or_default();
             let is_shorter = |(way, length): &(DVec3, f64)| {
                 depth > MUCH_LONGER * length
                     && way.dot(normal) < SAME_SIDE
                     && parts(pair, *way, *length)
             };
-            if known.iter().any(is_shorter) {
+            if ways.of(place.island).iter().any(is_shorter) {
                 crossings[i].place.is_rejected = true;
             } else {
-                add_way(known, &crossings[i]);
+                ways.add(place.island, normal, depth);
             }
         }
-    }
-}
-
-/// Adds the normal of a contact to ways with their greatest depths.
-fn add_way(
-    ways: &mut ArrayVec<(DVec3, f64), MOST_DIRECTIONS>,
-    Crossing { normal, depth, .. }: &Crossing,
-) {
-    match ways.iter_mut().find(|(way, _)| way.dot(*normal) >= SAME_DIRECTION) {
-        Some((_, greatest)) => *greatest = greatest.max(*depth),
-        None => _ = ways.try_push((*normal, *depth)),
     }
 }

@@ -1,0 +1,253 @@
+//! Removes contacts with walls that are not in the way of a convex shape: walls within the mesh, walls behind an edge, and walls
+//! that one way lifts the shape over.
+
+use glamx::{DVec3, Vec3};
+use sbbk_core::contact::Feature;
+use sbbk_core::surface::{Side, SurfaceKind};
+
+use super::contact::{PartContact, SAME_WAY};
+use super::points::contact_points;
+use super::query::{ConvexQuery, ConvexScratch};
+use crate::mesh::{LazySurface, is_covered};
+use crate::pair::query::ContactList;
+use crate::pair::reduce::EQUAL_DEPTH;
+use crate::pair::shapes::{LIP, filter_distance, filter_unit};
+use crate::pair::ways::{ALIKE, SAME_SIDE, Ways};
+
+/// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher: bodies catch on walls behind
+/// the edge that they slide over. Lower: rounding decides about contacts along the surface.
+const TANGENTIAL: f64 = 1.0e-4;
+
+/// Share of a distance below which another distance is less. Higher: rounding picks one of two equal contacts. Lower: bodies catch on the
+/// foot of a low step behind the edge that they slide over.
+const NEARER: f64 = 1.0 - 1.0e-6;
+
+/// A contact and its subshapes.
+type Hit = ([u32; 2], PartContact);
+
+/// Memory for the search for walls.
+#[derive(Default)]
+pub(super) struct WallMemory {
+    /// True for each contact that is removed.
+    removed: Vec<bool>,
+    /// Contacts apart, the nearest first.
+    apart: Vec<usize>,
+    /// Ways out of the triangles, by part.
+    ways: Ways,
+}
+
+impl ConvexQuery<'_> {
+    /// Removes the contacts of triangles that have the body on both sides, those that lead into the body, and those behind these. Asks
+    /// for sides only where contacts push in different directions. Parts whose middle is in a solid keep all contacts: the
+    /// solid is a room, and the triangles are of what stands there.
+    pub(super) fn drop_walls(
+        &self,
+        contacts: &mut ContactList<PartContact>,
+        scratch: &mut ConvexScratch,
+    ) {
+        // A ball has one point, and rolls over walls within a mesh.
+        let is_exempt = self.pair.is_ball() && !self.pair.config.leave_solids();
+        let Some(surface) = self.surface.as_ref().filter(|_| !is_exempt) else { return };
+        if !self.push_different_ways(contacts, scratch) || surface.kind() == SurfaceKind::Sheet {
+            return;
+        }
+        let mut removed = std::mem::take(&mut scratch.walls.removed);
+        self.find_walls(surface, contacts, scratch, &mut removed);
+        if removed.contains(&true) {
+            self.find_behind(contacts, scratch, &mut removed);
+            let mut removed = removed.iter();
+            contacts.retain(|_| removed.next() != Some(&true));
+        }
+        scratch.walls.removed = removed;
+    }
+
+    fn push_different_ways(&self, contacts: &[Hit], scratch: &mut ConvexScratch) -> bool {
+        let mut normals =
+            contacts.iter().map(|(of, hit)| self.shared_normal(*of, &hit.contact, scratch));
+        normals.next().is_some_and(|first| normals.any(|normal| first.dot(normal) < SAME_WAY))
+    }
+
+    /// Finds contacts of walls within the body, and contacts that lead into the body. Crossing triangles keep contacts that lead in
+    /// unless another one leads out.
+    fn find_walls(
+        &self,
+        surface: &LazySurface<'_>,
+        contacts: &[Hit],
+        scratch: &mut ConvexScratch,
+        removed: &mut Vec<bool>,
+    ) {
+        let leads_out = |hit: &Hit, scratch: &mut ConvexScratch| {
+            hit.1.contact.distance < 0.0 && !self.leads_in(surface, hit, scratch)
+        };
+        let has_way_out = contacts.iter().any(|hit| leads_out(hit, scratch));
+        let mut last = None;
+        removed.clear();
+        removed.extend(contacts.iter().map(|hit @ (of, PartContact { contact, .. })| {
+            let [triangle, part] = self.pair.mesh_place.swap(*of);
+            let is_wall = surface.around(triangle).side == Side::Inner
+                || (has_way_out || contact.distance > 0.0) && self.leads_in(surface, hit, scratch);
+            is_wall && {
+                let known = last.filter(|(of, _)| *of == part);
+                let within = || (part, self.is_middle_within(surface, part, scratch));
+                !last.insert(known.unwrap_or_else(within)).1
+            }
+        }));
+    }
+
+    /// Finds contacts apart at whose points the triangle of a removed contact is nearer. The way to them leads through that triangle.
+    fn find_behind(&self, contacts: &[Hit], scratch: &mut ConvexScratch, removed: &mut [bool]) {
+        let distance = |i: usize| contacts[i].1.contact.distance;
+        let mut apart = std::mem::take(&mut scratch.walls.apart);
+        apart.clear();
+        let may_be_behind =
+            |&i: &usize| distance(i) > 0.0 && contacts[i].1.feature != Feature::Face;
+        apart.extend((0..contacts.len()).filter(may_be_behind));
+        apart.sort_unstable_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+        // All triangles at a vertex have the same contact there.
+        let mut last = None;
+        for &i in &apart {
+            let (of, PartContact { contact, .. }) = &contacts[i];
+            let place = self.with_pair(*of, scratch, |pair| pair.touched_place(contact)).flatten();
+            let Some((place, seam)) = place.filter(|_| !removed[i]) else { continue };
+            let known = last.filter(|(at, _)| *at == place);
+            let (_, is_behind) = *last.insert(known.unwrap_or_else(|| {
+                let mut is_behind = false;
+                self.strays_at(contacts, *of, place, seam, |other| {
+                    let other = other as usize;
+                    is_behind |= removed[other] && distance(other) < NEARER * contact.distance;
+                });
+                (place, is_behind)
+            }));
+            removed[i] = is_behind;
+        }
+        scratch.walls.apart = apart;
+    }
+
+    /// Returns true if a contact leads into the body behind its triangle.
+    fn leads_in(
+        &self,
+        surface: &LazySurface<'_>,
+        (of, hit): &Hit,
+        scratch: &mut ConvexScratch,
+    ) -> bool {
+        let [triangle, _] = self.pair.mesh_place.swap(*of);
+        let around = surface.around(triangle);
+        let [a, b, c] = self.pair.mesh.corners(triangle).map(Vec3::as_dvec3);
+        let inward = -around.side.outward().unwrap_or(0.0) * (b - a).cross(c - a);
+        let direction =
+            self.with_pair(*of, scratch, |pair| pair.placed.directions(hit.contact.normal)[0]);
+        direction.is_some_and(|direction| {
+            inward.dot(direction) > TANGENTIAL * inward.length()
+                && around.points_inside(triangle, hit.feature, direction)
+        })
+    }
+
+    /// Returns true if the middle of a part is in a solid.
+    fn is_middle_within(
+        &self,
+        surface: &LazySurface<'_>,
+        part: u32,
+        scratch: &mut ConvexScratch,
+    ) -> bool {
+        let is_within = self.pair.parts.with(part, |shape| {
+            let middle = self.placed(part, &shape, scratch).in_mesh(shape.shape.middle()?);
+            Some(is_covered(self.pair.mesh.mesh, middle) && surface.winding_sign(middle) == Some(1))
+        });
+        is_within.flatten() == Some(true)
+    }
+
+    /// Removes contacts that push aside where one [way](crate::pair::ways) parts a part from all triangles that it crosses. Contacts
+    /// apart that this way lifts over their triangles go, too.
+    pub(super) fn keep_one_way(
+        &self,
+        contacts: &mut ContactList<PartContact>,
+        scratch: &mut ConvexScratch,
+    ) {
+        let Some(surface) = self.surface.as_ref().filter(|_| !self.pair.is_ball()) else { return };
+        if !self.push_different_ways(contacts, scratch) {
+            return;
+        }
+        let mut ways = std::mem::take(&mut scratch.walls.ways);
+        self.find_ways(surface, contacts, &mut ways, scratch);
+        contacts.retain(|hit @ (of, PartContact { contact, .. })| {
+            let [_, part] = self.pair.mesh_place.swap(*of);
+            let Some((way, length)) = ways.least(part as usize) else { return true };
+            let along = way.dot(contact.normal);
+            if self.depth(hit, scratch) > 0.0 {
+                return along >= SAME_SIDE;
+            }
+            along.abs() >= SAME_SIDE || !self.parts(surface, hit, (way, length), scratch)
+        });
+        scratch.walls.ways = ways;
+    }
+
+    /// Finds the ways that part each part from all triangles that it crosses. Contacts that hardly hover know ways, too.
+    fn find_ways(
+        &self,
+        surface: &LazySurface<'_>,
+        contacts: &[Hit],
+        ways: &mut Ways,
+        scratch: &mut ConvexScratch,
+    ) {
+        let part_of = |of: [u32; 2]| self.pair.mesh_place.swap(of)[1] as usize;
+        ways.clear();
+        for hit @ (of, PartContact { contact, .. }) in contacts {
+            let depth = self.depth(hit, scratch);
+            if depth >= -self.equal_height() {
+                ways.add(part_of(*of), contact.normal, depth.max(0.0));
+            }
+        }
+        let small = LIP * self.filter_unit();
+        for hit @ (of, PartContact { contact, .. }) in contacts {
+            if self.depth(hit, scratch) > 0.0 {
+                let parts = |way, length| self.parts(surface, hit, (way, length), scratch);
+                ways.keep_parting(part_of(*of), contact.normal, small, parts);
+            }
+        }
+    }
+
+    /// Returns the depth of a contact; negative if it is apart.
+    fn depth(&self, (of, hit): &Hit, scratch: &mut ConvexScratch) -> f64 {
+        let radius = self.with_pair(*of, scratch, |pair| pair.radius()).unwrap_or_default();
+        radius - hit.contact.distance
+    }
+
+    /// Returns the difference up to which two heights are equal.
+    fn equal_height(&self) -> f64 {
+        f64::from(EQUAL_DEPTH) * self.filter_unit()
+    }
+
+    /// Returns the unit of the filter for the smaller shape.
+    fn filter_unit(&self) -> f64 {
+        let radius = self.pair.mesh.ball().radius.min(self.part_data.ball.radius);
+        filter_unit(self.pair.pose, filter_distance(true, radius))
+    }
+
+    /// Returns true if a triangle, and the surface, end near the lowest point of a contact along a way. The way then parts both.
+    fn parts(
+        &self,
+        surface: &LazySurface<'_>,
+        (of, hit): &Hit,
+        (way, length): (DVec3, f64),
+        scratch: &mut ConvexScratch,
+    ) -> bool {
+        let [triangle, _] = self.pair.mesh_place.swap(*of);
+        let parts = self.with_pair(*of, scratch, |pair| {
+            let corners = &pair.placed.in_part(pair.corners);
+            let height = |&i: &usize| corners[i].dot(way);
+            let highest = (0..3).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0);
+            let mut lowest = f64::INFINITY;
+            contact_points(corners, pair.part.shape, hit, None, 0.0, |point| {
+                lowest = lowest.min(point.on_shape.dot(way));
+            });
+            let overlap = height(&highest) - lowest + pair.radius();
+            let [axis, _] = pair.placed.directions(way);
+            let corner = Feature::Vertex(highest as u8);
+            // A contact without points stops nothing.
+            lowest == f64::INFINITY
+                || overlap.abs() <= ALIKE * length + self.equal_height()
+                    && surface.around(triangle).is_local_minimum(triangle, corner, axis, None)
+        });
+        parts == Some(true)
+    }
+}

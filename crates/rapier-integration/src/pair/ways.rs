@@ -1,0 +1,69 @@
+//! Ways out of overlaps, by group: the islands of two meshes, or the parts of a convex shape.
+//!
+//! One way may part all that overlaps in a group, at a depth that resting bodies have. Only contacts along it count then. The sides of a
+//! gap under a body that has sunk in by a millimetre stop the body otherwise.
+
+use arrayvec::ArrayVec;
+use glamx::DVec3;
+use rustc_hash::FxHashMap;
+
+/// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor let go. Lower: edges that cross push
+/// each other aside.
+pub(super) const ALIKE: f64 = 1.1;
+
+/// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
+/// lower: contacts that do not push against each other are rejected.
+pub(super) const SAME_SIDE: f64 = 0.5;
+
+/// Cosine above which two normals of a triangle's contacts are one direction. Higher: a triangle that
+/// many others cross takes longer; lower: directions that push against each other are confused.
+pub(super) const SAME_DIRECTION: f64 = 0.99;
+
+/// Directions of reliable contacts that are remembered for a group. Higher: slower where many differ. Lower: second
+/// passes for pairs that a contact separates.
+const MOST_DIRECTIONS: usize = 16;
+
+/// Directions with the greatest depths of their contacts.
+pub(super) type Directions = ArrayVec<(DVec3, f64), MOST_DIRECTIONS>;
+
+/// Directions of the contacts of each group.
+#[derive(Default)]
+pub(super) struct Ways(FxHashMap<usize, Directions>);
+
+impl Ways {
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Returns the directions of a group.
+    pub(super) fn of(&mut self, group: usize) -> &mut Directions {
+        self.0.entry(group).or_default()
+    }
+
+    /// Adds the direction of a contact.
+    pub(super) fn add(&mut self, group: usize, normal: DVec3, depth: f64) {
+        let known = self.of(group);
+        match known.iter_mut().find(|(way, _)| way.dot(normal) >= SAME_DIRECTION) {
+            Some((_, greatest)) => *greatest = greatest.max(depth),
+            None => _ = known.try_push((normal, depth)),
+        }
+    }
+
+    /// Removes the ways that are deeper than `small`, and those that do not part an overlap with a contact along `normal`.
+    pub(super) fn keep_parting(
+        &mut self,
+        group: usize,
+        normal: DVec3,
+        small: f64,
+        mut parts: impl FnMut(DVec3, f64) -> bool,
+    ) {
+        self.of(group).retain(|(way, depth)| {
+            *depth <= small && (way.dot(normal) >= SAME_DIRECTION || parts(*way, *depth))
+        });
+    }
+
+    /// Returns the least deep way of a group.
+    pub(super) fn least(&self, group: usize) -> Option<(DVec3, f64)> {
+        self.0.get(&group)?.iter().copied().min_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+}
