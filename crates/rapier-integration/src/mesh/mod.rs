@@ -3,7 +3,6 @@
 
 mod budget;
 mod data;
-mod flags;
 mod identity;
 mod neighbours;
 mod pair_mesh;

@@ -29,9 +29,7 @@ use sbbk_core::tree::{BATCH, LeafBatch, Tree};
 use super::field::Field;
 use super::pose::PairPose;
 use super::query::Candidate;
-use super::shapes::{
-    DISTANT, FieldShape, Hint, MeshShape, NEAR_NORMAL, TriangleShape, TriangleShapes,
-};
+use super::shapes::{DISTANT, Hint, MeshShape, NEAR_NORMAL, TriangleShape, TriangleShapes};
 use crate::mesh::MeshView;
 
 /// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body of one length unit has a
@@ -115,22 +113,14 @@ impl TriangleShapes<'_> {
     fn are_few(&self) -> bool {
         let PairPose { pos12, prediction, .. } = *self.pose;
         let poses = [pos12, pos12.inverse()];
-        let are_few_of_field = |field: &FieldShape<'_>, mesh: &MeshShape<'_>, pose: &Pose| {
-            let under = field.field.count_under(&mesh.view.placed_root(pose, prediction));
-            mesh.view.mesh.indices().len() as f64 * under <= MOST_PAIRS as f64
-        };
-        match &self.shapes {
-            [TriangleShape::Mesh(one), TriangleShape::Mesh(two)] => {
-                are_few_of_meshes([one.view, two.view], poses, prediction)
-            }
-            [TriangleShape::Field(field), TriangleShape::Mesh(mesh)] => {
-                are_few_of_field(field, mesh, &poses[0])
-            }
-            [TriangleShape::Mesh(mesh), TriangleShape::Field(field)] => {
-                are_few_of_field(field, mesh, &poses[1])
-            }
-            [TriangleShape::Field(_), TriangleShape::Field(_)] => true,
+        if let [TriangleShape::Mesh(one), TriangleShape::Mesh(two)] = &self.shapes {
+            return are_few_of_meshes([one.view, two.view], poses, prediction);
         }
+        let shapes = (&self[self.larger], &self[1 - self.larger]);
+        let (TriangleShape::Field(field), TriangleShape::Mesh(mesh)) = shapes else { return true };
+        let root = mesh.view.placed_root(&poses[self.larger], prediction);
+        let under = field.field.count_under(&root);
+        mesh.view.mesh.indices().len() as f64 * under <= MOST_PAIRS as f64
     }
 
     /// Returns a test for triangles beside each other. Their contacts are no local minima while candidates within `margin`

@@ -237,27 +237,21 @@ impl TrianglePartPair<'_> {
         extends_beyond(&self.placed.in_part(self.corners), contact)
     }
 
-    /// Returns the contact along the normal of the triangle, for another contact of the part. `None` if the bodies do not cross
+    /// Returns the contact along the normal of the triangle, for another contact of the part. `None` if the bodies cross nowhere
     /// along that normal, or if the contact leads against the other one and is not [`SHALLOW`].
     pub(super) fn face_contact_for(&self, other: &ConvexContact) -> Option<ConvexContact> {
-        let face = self.crossing_face_contact()?;
-        let reach = |direction| self.placed.extent.reach(self.part.shape, direction);
-        let height = || reach(face.normal) + reach(-face.normal);
-        let is_safe =
-            other.normal.dot(face.normal) >= AGAINST || -face.distance <= SHALLOW * height();
-        is_safe.then_some(face)
-    }
-
-    /// Returns the contact along the normal of the triangle, if the bodies cross along it somewhere.
-    fn crossing_face_contact(&self) -> Option<ConvexContact> {
         let corners = &self.placed.in_part(self.corners);
-        let (contact, feature) = (self.face_contact(corners)?, Feature::Face);
-        let contact = PartContact { contact, feature, source: NormalSource::Neighbour };
+        let (face, feature) = (self.face_contact(corners)?, Feature::Face);
+        let contact = PartContact { contact: face, feature, source: NormalSource::Neighbour };
         let mut is_crossing = false;
         contact_points(corners, self.part.shape, &contact, None, 0.0, |point| {
             is_crossing |= point.distance < 0.0;
         });
-        is_crossing.then_some(contact.contact)
+        let reach = |direction| self.placed.extent.reach(self.part.shape, direction);
+        let height = || reach(face.normal) + reach(-face.normal);
+        let is_safe =
+            || other.normal.dot(face.normal) >= AGAINST || -face.distance <= SHALLOW * height();
+        (is_crossing && is_safe()).then_some(face)
     }
 
     /// Returns the least deep contact that moves the part out of the wedge behind the planes of this triangle and another one. The
