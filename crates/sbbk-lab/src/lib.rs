@@ -9,10 +9,8 @@
 
 pub mod backend;
 pub mod cli;
-mod error;
 pub mod mesh_file;
 pub mod metrics;
-mod named;
 pub mod parallel;
 mod prelude;
 pub mod progress;

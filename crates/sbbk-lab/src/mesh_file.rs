@@ -6,8 +6,8 @@ use std::{fs, io};
 use glamx::Vec3;
 use mesh_loader::Loader;
 
-use crate::error::file_error;
 use crate::mesh::Mesh;
+use crate::report::file_error;
 
 /// Loads an `.obj` or `.stl` file as one welded mesh in the file's own units, named after the file.
 /// Faces with more than three corners are cut into triangles.

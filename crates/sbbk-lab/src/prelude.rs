@@ -1,7 +1,6 @@
 //! Names that most modules use.
 
 pub(crate) use crate::backend::{Backend, Dispatcher, Memory};
-pub(crate) use crate::error::file_error;
 pub(crate) use crate::mesh;
 pub(crate) use crate::mesh::Mesh;
 pub(crate) use crate::metrics::{
@@ -11,7 +10,7 @@ pub(crate) use crate::parallel;
 pub(crate) use crate::progress::Progress;
 pub(crate) use crate::replay;
 pub(crate) use crate::replay::Recorder;
-pub(crate) use crate::report::{Results, Row};
+pub(crate) use crate::report::{Results, Row, file_error};
 pub(crate) use crate::scene::{MonkeyPile, Scene, SceneWorld, collider, random};
 pub(crate) use clap::ValueEnum;
 pub(crate) use glamx::{DVec3, Pose3, Quat, Vec3};

@@ -10,8 +10,7 @@ use base64::prelude::BASE64_STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use super::difference::Difference;
-use super::recorder::STRIDE;
+use super::recorder::{Difference, STRIDE};
 use super::shapes::{levels, surface};
 
 /// Steps of a quaternion's parts.

@@ -15,7 +15,6 @@
 //! ```
 
 use crate::prelude::*;
-mod difference;
 mod encode;
 mod recorder;
 mod shapes;

@@ -7,7 +7,7 @@ use flate2::read::GzDecoder;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::difference::Difference;
+use super::recorder::Difference;
 use super::{encode, page};
 
 const HEADS: usize = 12;

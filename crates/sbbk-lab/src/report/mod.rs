@@ -1,14 +1,12 @@
 //! Results: rows, tables and files.
 
-mod environment;
 mod output;
 mod row;
 mod tables;
 
 use std::fmt;
 
-use self::environment::environment;
-
+pub(crate) use output::file_error;
 pub use output::{check_output, write_file};
 pub use row::Row;
 pub use tables::{Table, tables, three_digits};
@@ -32,7 +30,7 @@ impl Results {
     /// Findings of this machine, with the verdict that the documentation describes, if any.
     pub fn new(study: &'static str, rows: Vec<Row>) -> Self {
         let (environment, verdict) =
-            (environment(), tables::verdict(study, &output::numbers(&rows)));
+            (output::environment(), tables::verdict(study, &output::numbers(&rows)));
         Self { study, environment, verdict, rows, notes: Vec::new() }
     }
 }

@@ -8,7 +8,6 @@
 use crate::prelude::*;
 
 mod advise;
-mod judged;
 mod measure;
 mod queries;
 mod robots;

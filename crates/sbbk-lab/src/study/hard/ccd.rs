@@ -45,6 +45,7 @@ fn target(name: &str) -> Mesh {
 
 /// Plates that fly down at several turns and places.
 fn plates(kit: &Kit, name: &str) -> Figures {
+    const SPEED: f32 = 30.0;
     let mesh = target(name);
     let (fixed, plate) = (kit.mesh(&mesh), kit.collider(&Form::cuboid(PLATE, 4)));
     let (surface, inside) = (mesh.shape(), Depths::new(&mesh));
@@ -53,19 +54,14 @@ fn plates(kit: &Kit, name: &str) -> Figures {
         let phase = index as f32 / PHASES as f32;
         let mut world = kit.world();
         world.fix(Vec3::ZERO, fixed.clone());
-        let body = world.add(thrown(phase), &plate);
+        let turn = Quat::from_rotation_y(phase * TAU) * Quat::from_rotation_x(0.6 * phase);
+        let place = Vec3::new(0.1 * phase, 2.0 + phase * SPEED * STEP, 0.05);
+        let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
+        let body = body.linvel(-SPEED * Vec3::Y).soft_ccd_prediction(0.6);
+        let body = world.add(body, &plate);
         plate_passes(&mut world, body, is_pointed.then_some(&*surface), &inside)
     };
     Figures::default().none("passed", (0..PHASES).filter(passes).count())
-}
-
-const PLATE_SPEED: f32 = 30.0;
-
-fn thrown(phase: f32) -> RigidBodyBuilder {
-    let turn = Quat::from_rotation_y(phase * TAU) * Quat::from_rotation_x(0.6 * phase);
-    let place = Vec3::new(0.1 * phase, 2.0 + phase * PLATE_SPEED * STEP, 0.05);
-    let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
-    body.linvel(-PLATE_SPEED * Vec3::Y).soft_ccd_prediction(0.6)
 }
 
 /// True if a plate ends below the target, or if its middle stays in the target for longer than an

@@ -17,7 +17,6 @@ mod inside;
 mod kit;
 mod machines;
 pub mod random;
-mod report;
 mod resting;
 mod road;
 
@@ -25,9 +24,8 @@ pub use self::kit::Column;
 
 use clap::Args;
 
-use self::figures::Figures;
+use self::figures::{Figures, Run};
 use self::kit::{Film, Kit};
-use self::report::Run;
 
 /// A kind of scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -159,7 +157,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> io::Result<Results> {
         format!("{column} {} of {}", failed.count(), of.count())
     });
     let verdict = format!("scenes that fail: {}", failed.collect::<Vec<_>>().join(", "));
-    let notes = report::notes(&plan.settings, &runs);
+    let notes = figures::notes(&plan.settings, &runs);
     Ok(Results { verdict, notes, ..Results::new("hard_scenes", rows.collect()) })
 }
 

@@ -3,29 +3,18 @@
 //! Closed forms, conservation of energy, and the same scene with Rapier's shapes judge all columns
 //! alike. Limits have no unit: they are in sizes of the scene, or shares.
 
-mod bowls;
-mod chains;
 mod draw;
-mod gears;
-mod grippers;
-mod overlaps;
-mod piles;
-mod plates;
+mod heaps;
+mod machines;
 mod riders;
-mod rooms;
-mod screws;
-mod stacks;
 mod stage;
-mod tables;
-mod vessels;
 
 use std::ops::Range;
 
+use super::figures::{self, Figures, Run};
 use super::kit::{Column, Kit};
-use super::report::{self, Run};
 use super::{Settings, Trial, run_all};
 use crate::prelude::*;
-use crate::study::hard::figures::Figures;
 use draw::Draw;
 
 /// Names that most families use.
@@ -58,18 +47,18 @@ impl Family {
     fn run(self, draw: &mut Draw, kit: &Kit) -> Figures {
         match self {
             Self::Floors => riders::floors(draw, kit),
-            Self::Stacks => stacks::run(draw, kit),
-            Self::Piles => piles::run(draw, kit),
-            Self::Chains => chains::run(draw, kit),
-            Self::Bowls => bowls::run(draw, kit),
+            Self::Stacks => heaps::stacks(draw, kit),
+            Self::Piles => heaps::piles(draw, kit),
+            Self::Chains => machines::chains(draw, kit),
+            Self::Bowls => heaps::bowls(draw, kit),
             Self::Slopes => riders::slopes(draw, kit),
-            Self::Gears => gears::run(draw, kit),
-            Self::Screws => screws::run(draw, kit),
-            Self::Plates => plates::run(draw, kit),
-            Self::Overlaps => overlaps::run(draw, kit),
-            Self::Rooms => rooms::run(draw, kit),
-            Self::Tables => tables::run(draw, kit),
-            Self::Grippers => grippers::run(draw, kit),
+            Self::Gears => machines::gears(draw, kit),
+            Self::Screws => machines::screws(draw, kit),
+            Self::Plates => heaps::plates(draw, kit),
+            Self::Overlaps => heaps::overlaps(draw, kit),
+            Self::Rooms => heaps::rooms(draw, kit),
+            Self::Tables => heaps::tables(draw, kit),
+            Self::Grippers => machines::grippers(draw, kit),
         }
     }
 }
@@ -125,7 +114,7 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> io::Result<Results> {
     let broken = runs.iter().filter(|run| run.column == Column::Sbbk && run.wrong().is_some());
     let broken = broken.flat_map(|run| run.rows("random scenes: broken"));
     let rows: Vec<Row> = rows.chain(broken).collect();
-    let mut notes = report::notes(&plan.settings, &runs);
+    let mut notes = figures::notes(&plan.settings, &runs);
     if !notes.is_empty() {
         let seed = plan.seed;
         let unit = plan.unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
