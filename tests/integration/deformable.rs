@@ -1,7 +1,7 @@
 use crate::edited_mesh::{beside, torus};
 use crate::heightfield::terrain::Terrain;
 use crate::prelude::*;
-use crate::soft_pairs::question::furniture;
+use crate::soft_pairs::furniture;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 

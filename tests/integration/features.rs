@@ -6,7 +6,6 @@
 mod coming_back;
 mod compound;
 mod convex {
-    mod question;
     pub mod shapes;
 }
 mod determinism;

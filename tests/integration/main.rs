@@ -34,8 +34,6 @@ mod dirty;
 mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.
 mod exact;
-/// Contacts of fine meshes that are not near.
-mod far;
 /// Time that grows with the triangles.
 mod growth;
 /// Meshes against height fields.
@@ -82,7 +80,7 @@ mod soft_pairs;
 mod support;
 /// Contacts of surfaces beside contacts of triangles.
 mod surfaces;
-/// Thin and fast bodies.
+/// Thin and fast bodies, and contacts of fine meshes that are not near.
 mod thin;
 /// Brute force in f64.
 mod truth;

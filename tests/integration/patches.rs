@@ -262,7 +262,7 @@ fn heads_come_to_rest() {
         let at = Pose3::from_parts(Vec3::new(6.0 * i as Real - 30.0, 1.4, 0.0), turn);
         (RigidBodyBuilder::dynamic().pose(at), ColliderBuilder::new(head.clone()))
     });
-    let mut heads = Bodies::new(on_ground(floor, detailed(ContactDetail::Patches)), heads);
+    let mut heads = SceneWorld::new(on_ground(floor, detailed(ContactDetail::Patches)), heads);
     heads.step(600);
     assert!(heads.awake() <= 2, "{} of 10 heads do not lie still", heads.awake());
 }

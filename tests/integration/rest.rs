@@ -1,5 +1,5 @@
 use crate::prelude::*;
-use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
+use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene};
 
 /// Runs a scene for some steps.
 fn step(scene: &mut SceneWorld, steps: usize) {

@@ -1,6 +1,7 @@
 use crate::prelude::*;
 use rapier3d::dynamics::SoftBodyBuilder;
 use rapier3d::parry::shape::HeightFieldCellStatus;
+pub use sbbk_testkit::scene::{Placed, SceneWorld};
 
 /// A world of fixed colliders. Stock answers if there is no dispatcher.
 pub fn world_of(
@@ -53,9 +54,9 @@ pub fn after(
 pub fn settled(
     steps: usize,
     world: PhysicsWorld,
-    bodies: impl IntoIterator<Item = (RigidBodyBuilder, ColliderBuilder)>,
+    bodies: impl IntoIterator<Item = Placed>,
 ) -> Vec<Vec3> {
-    let mut bodies = Bodies::new(world, bodies);
+    let mut bodies = SceneWorld::new(world, bodies);
     bodies.step(steps);
     bodies.poses().iter().map(|pose| pose.translation).collect()
 }
@@ -66,55 +67,24 @@ pub fn lowest(mesh: &Mesh, pose: &Pose) -> Real {
     heights.fold(Real::INFINITY, Real::min)
 }
 
-/// A world and the bodies that move in it.
-pub struct Bodies {
-    pub world: PhysicsWorld,
-    handles: Vec<RigidBodyHandle>,
-}
-
-impl Bodies {
-    /// Adds bodies to a world.
-    pub fn new(
-        mut world: PhysicsWorld,
-        bodies: impl IntoIterator<Item = (RigidBodyBuilder, ColliderBuilder)>,
-    ) -> Self {
-        let insert = |(body, collider)| world.insert(body, collider).0;
-        let handles = bodies.into_iter().map(insert).collect();
-        Self { world, handles }
-    }
-
-    /// Bodies of `shape` at these places. Stock answers if there is no dispatcher.
-    pub fn above(
-        ground: SharedShape,
-        shape: &SharedShape,
-        places: impl IntoIterator<Item = Vec3>,
-        angular_damping: Real,
-        dispatcher: Option<SbbkDispatcher>,
-    ) -> Self {
-        let bodies = places.into_iter().map(|place| {
-            let body = RigidBodyBuilder::dynamic().translation(place);
-            let collider = ColliderBuilder::new(shape.clone()).density(1.0);
-            (body.angular_damping(angular_damping), collider)
-        });
-        Self::new(on_ground(ColliderBuilder::new(ground), dispatcher), bodies)
-    }
-
-    pub fn step(&mut self, count: usize) {
-        (0..count).for_each(|_| self.world.step());
-    }
-
-    /// Number of bodies that are not asleep.
-    pub fn awake(&self) -> usize {
-        self.handles.iter().filter(|&&body| !self.world.bodies[body].is_sleeping()).count()
-    }
-
-    pub fn poses(&self) -> Vec<Pose> {
-        self.handles.iter().map(|&body| *self.world.bodies[body].position()).collect()
-    }
+/// Bodies of `shape` at these places. Stock answers if there is no dispatcher.
+pub fn bodies_above(
+    ground: SharedShape,
+    shape: &SharedShape,
+    places: impl IntoIterator<Item = Vec3>,
+    angular_damping: Real,
+    dispatcher: Option<SbbkDispatcher>,
+) -> SceneWorld {
+    let bodies = places.into_iter().map(|place| {
+        let body = RigidBodyBuilder::dynamic().translation(place);
+        let collider = ColliderBuilder::new(shape.clone()).density(1.0);
+        (body.angular_damping(angular_damping), collider)
+    });
+    SceneWorld::new(on_ground(ColliderBuilder::new(ground), dispatcher), bodies)
 }
 
 /// Three dumbbells above a mesh terrain.
-pub fn dumbbells(dispatcher: Option<SbbkDispatcher>) -> Bodies {
+pub fn dumbbells(dispatcher: Option<SbbkDispatcher>) -> SceneWorld {
     let ground = mesh::terrain(12.0, 24, 0.4).shape();
     let bar = SharedShape::cuboid(0.6, 0.1, 0.1);
     let end = SharedShape::cuboid(0.3, 0.3, 0.3);
@@ -124,14 +94,14 @@ pub fn dumbbells(dispatcher: Option<SbbkDispatcher>) -> Bodies {
         (Pose::translation(0.7, 0.0, 0.0), end),
     ]);
     let place = |i| Vec3::new(3.0 * (i as Real - 1.0), 1.2, 0.3 * i as Real);
-    Bodies::above(ground, &dumbbell, (0..3).map(place), 2.0, dispatcher)
+    bodies_above(ground, &dumbbell, (0..3).map(place), 2.0, dispatcher)
 }
 
 /// Four heads above a terrain.
-pub fn heads_above(terrain: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Bodies {
+pub fn heads_above(terrain: SharedShape, dispatcher: Option<SbbkDispatcher>) -> SceneWorld {
     let head = mesh::monkey_head().shape();
     let place = |i: usize| Vec3::new(3.0 * (i % 2) as Real - 1.5, 2.2, 3.0 * (i / 2) as Real - 1.5);
-    Bodies::above(terrain, &head, (0..4).map(place), 3.0, dispatcher)
+    bodies_above(terrain, &head, (0..4).map(place), 3.0, dispatcher)
 }
 
 /// A bowl of twelve units across: bodies stay in it.

@@ -14,8 +14,6 @@ mod moving;
 mod nonlinear;
 /// Queries without manifolds, against brute force.
 mod queries;
-/// Checks against brute force.
-mod question;
 /// A head at rest on a floor.
 mod rest;
 /// Thin shapes across edges of solids.

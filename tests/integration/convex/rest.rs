@@ -3,7 +3,7 @@ use crate::prelude::*;
 /// A head that falls on a floor and comes to rest: where it is, step by step.
 fn fall(floor: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Vec<Pose> {
     let head = mesh::monkey_head().shape();
-    let mut world = Bodies::above(floor, &head, [Vec3::new(0.3, 1.6, -0.2)], 2.0, dispatcher);
+    let mut world = bodies_above(floor, &head, [Vec3::new(0.3, 1.6, -0.2)], 2.0, dispatcher);
     let step = |_| {
         world.step(1);
         world.poses()[0]
@@ -63,7 +63,7 @@ fn discs_on_uneven_ground_fall_asleep() {
                 Vec3::new(1.9 * column - 4.9 + aside, 1.5, 1.7 * row - 4.2)
             };
             let (places, dispatcher) = ((0..36).map(place), Some(SbbkDispatcher::default()));
-            let mut world = Bodies::above(ground.clone(), &shape, places, 1.0, dispatcher);
+            let mut world = bodies_above(ground.clone(), &shape, places, 1.0, dispatcher);
             world.step(900);
             world.awake()
         });

@@ -54,3 +54,78 @@ fn fast_bodies_stay_above_two_sided_floors() {
         }
     }
 }
+
+/// Segments of the disc.
+const SEGMENTS: u32 = 32;
+
+/// A disc on a facet of its rim, with single triangles that are wound the other way. Would catch neighbours whose normals count
+/// as outward ones: a corner of the facet has no contact.
+#[test]
+fn flipped_triangles_carry_as_others_do() {
+    let profile = [[0.0, -0.1], [0.5, -0.1], [0.5, 0.1], [0.0, 0.1]];
+    let disc = mesh::revolved(&profile.map(Vec2::from), SEGMENTS);
+    let grounds = [1, 40].map(|cells| mesh::slab(Vec3::new(10.0, 0.5, 10.0), [cells, 1, cells]));
+    let grounds = grounds.map(|ground| ground.shape());
+    let every = every();
+    let width = 0.5 * (0.5 * TAU / SEGMENTS as Real).sin();
+    let mut random = Rand32::new(3);
+    for round in 0..200 {
+        let mut flipped = disc.clone();
+        for triangle in &mut flipped.triangles {
+            if random.rand_float() < 0.03 {
+                triangle.swap(1, 2);
+            }
+        }
+        let facet = TAU / SEGMENTS as Real * (random.rand_range(0..SEGMENTS) as Real + 0.5);
+        let mut within = |size: Real| size * (2.0 * random.rand_float() - 1.0);
+        let upright = Quat::from_rotation_x(FRAC_PI_2) * Quat::from_rotation_y(facet);
+        let turn = Quat::from_rotation_y(within(3.0)) * upright;
+        let height = 0.5 + 0.5 * (0.5 * TAU / SEGMENTS as Real).cos();
+        let place = Vec3::new(within(3.0), height - 0.0007 + within(0.0005), within(3.0));
+        let pose = Pose::from_parts(place, turn);
+        let [axis, across] = [0.1 * (turn * Vec3::Y), width * (turn * Vec3::Y).cross(Vec3::Y)];
+        let corners = [axis + across, axis - across, -axis + across, -axis - across];
+        for (name, body) in [("disc", &disc), ("flipped disc", &flipped)] {
+            let body = body.shape();
+            let found = Question::new(&*grounds[round % 2].0, &*body.0, pose).fresh(&every);
+            let up = found.iter().filter(|manifold| manifold.local_n1.y > 0.9);
+            let places: Vec<Vec3> =
+                up.flat_map(|m| &m.points).map(|point| point.local_p1 - place).collect();
+            let has = |corner: &Vec3| {
+                places.iter().any(|place| (place - corner).with_y(0.0).length() < 0.005)
+            };
+            assert!(corners.iter().all(has), "round {round}, {name}: {places:?}");
+        }
+    }
+}
+
+/// Cubes that are sunk a little in the narrow side of a slab. Up to 3 % of the triangles of either mesh are wound the other way.
+/// Would catch contacts far along the wall, of triangles that know no way out of it.
+#[test]
+fn cubes_in_a_narrow_side_have_no_contact_along_it() {
+    let (every, mut random) = (every(), Rand32::new(1));
+    let (mut count, mut deep) = (0, 0);
+    for round in 0..4000 {
+        let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
+        let half = Vec3::from_array([(); 3].map(|()| within(0.3, 1.0)));
+        let sunk = 3e-4 * 67.0_f32.powf(within(0.0, 1.0));
+        let beside = Vec3::new(1.5 - sunk, within(-0.3, 0.3), within(-1.5, 1.5));
+        let place = beside + half * Vec3::new(1.0, within(-1.0, 1.0), within(-1.0, 1.0));
+        let turn = if round % 3 == 0 { within(-PI, PI) } else { 0.0 };
+        let turn = Quat::from_rotation_x(turn);
+        let mut slab = mesh::cuboid(Vec3::new(1.5, 0.3, 1.5), 1 + random.rand_range(0..12));
+        let mut cube = mesh::cuboid(half, 1 + random.rand_range(0..4));
+        let turned = if round % 2 == 0 { &mut slab } else { &mut cube };
+        let last = turned.triangles.len() as u32;
+        let share = last * (round as u32 / 2 % 4) / 100;
+        (0..share).for_each(|_| turned.triangles[random.rand_range(0..last) as usize].swap(1, 2));
+        let pose = Pose::from_parts(place, turn);
+        let [slab, cube] = [slab, cube].map(|of| of.shape());
+        let found = Question::new(&*slab.0, &*cube.0, pose).fresh(&every);
+        let deepest = found.iter().map(distance).fold(0.0, Real::min);
+        deep += u32::from(deepest < -3.0 * sunk - 0.01);
+        count += u32::from(deepest < 0.0);
+    }
+    println!("{deep} of {count} too deep");
+    assert!(count > 2000 && deep == 0, "{deep} of {count}");
+}

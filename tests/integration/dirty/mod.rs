@@ -8,15 +8,13 @@ use crate::prelude::*;
 use rapier_integration::PreparedTree;
 use table::{Case, judge};
 
-/// Meshes with triangles that are there several times.
+/// Triangles that are there several times, or wound the other way.
 mod doubles;
 /// Edges with T-junctions.
 mod edges;
 /// Meshes that fall on flat grounds.
 mod falls;
-/// Single triangles that are wound the other way.
-mod flipped;
-/// Bodies that slide and roll over floors.
+/// Bodies that slide and roll over floors, some with a contact skin.
 mod floors;
 /// Levels of boxes that overlap.
 mod levels;
@@ -30,8 +28,6 @@ mod roads;
 mod rooms;
 /// A nut on a bolt, by its closed form.
 mod screw;
-/// Boxes with a contact skin.
-mod skins;
 /// Meshes that roll, and fall, on two triangles.
 mod slopes;
 /// Closed meshes with bodies sunk in, and vessels.

@@ -129,7 +129,7 @@ fn piles_of_hollow_boxes_come_to_rest() {
             let body = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
             (body, ColliderBuilder::new(shapes[i % 2].clone()).mass(1.0))
         });
-        let mut bodies = Bodies::new(world, bodies);
+        let mut bodies = SceneWorld::new(world, bodies);
         bodies.step(900);
         awake += bodies.awake();
     }

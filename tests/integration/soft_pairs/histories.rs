@@ -1,4 +1,4 @@
-use super::question::{anew, assert_same_set, furniture};
+use super::{anew, assert_same_set, furniture};
 use crate::heightfield::terrain::Terrain;
 use crate::prelude::*;
 use proptest::prelude::*;

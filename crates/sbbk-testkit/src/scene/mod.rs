@@ -11,19 +11,18 @@
 //! assert_eq!(pile.watched.len(), 8);
 //! ```
 
-mod helicopter;
-mod pile;
+mod paper;
 pub mod random;
 mod resting;
 
-use rapier3d::dynamics::{MassProperties, RigidBodyHandle};
+use glamx::Pose3;
+use rapier3d::dynamics::{MassProperties, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::mesh::Mesh;
 
-pub use helicopter::HelicopterBallDrop;
-pub use pile::MonkeyPile;
+pub use paper::{HelicopterBallDrop, MonkeyPile};
 pub use resting::{BoxStack, HeadOnSlope};
 
 /// Data from which the same world can be built again and again.
@@ -40,6 +39,38 @@ pub struct SceneWorld {
     pub world: PhysicsWorld,
     /// The moving bodies, in the order in which the scene lists them.
     pub watched: Vec<RigidBodyHandle>,
+}
+
+/// A body and its collider.
+pub type Placed = (RigidBodyBuilder, ColliderBuilder);
+
+impl SceneWorld {
+    /// Adds moving bodies to a world.
+    pub fn new(mut world: PhysicsWorld, bodies: impl IntoIterator<Item = Placed>) -> Self {
+        let insert = |(body, collider)| world.insert(body, collider).0;
+        let watched = bodies.into_iter().map(insert).collect();
+        Self { world, watched }
+    }
+
+    /// Makes a world of a fixed ground and moving bodies.
+    fn on(ground: Placed, bodies: impl IntoIterator<Item = Placed>) -> Self {
+        let mut world = PhysicsWorld::new();
+        world.insert(ground.0, ground.1);
+        Self::new(world, bodies)
+    }
+
+    pub fn step(&mut self, count: usize) {
+        (0..count).for_each(|_| self.world.step());
+    }
+
+    /// Number of bodies that are not asleep.
+    pub fn awake(&self) -> usize {
+        self.watched.iter().filter(|&&body| !self.world.bodies[body].is_sleeping()).count()
+    }
+
+    pub fn poses(&self) -> Vec<Pose3> {
+        self.watched.iter().map(|&body| *self.world.bodies[body].position()).collect()
+    }
 }
 
 /// A collider of a mesh, whose clones share its shape. The enclosed volume gives

@@ -3,7 +3,6 @@
 use glamx::{Pose3, Vec3};
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::math::{Real, Vector};
-use rapier3d::pipeline::PhysicsWorld;
 
 use super::{Scene, SceneWorld, collider};
 use crate::mesh;
@@ -23,17 +22,13 @@ impl Scene for BoxStack {
 
     fn build(&self) -> SceneWorld {
         const GAP: Real = 0.001;
-        let mut world = PhysicsWorld::new();
         let floor = collider(&mesh::cuboid(Vec3::new(5.0, 0.5, 5.0), 1));
         let cube = collider(&mesh::cuboid(Vec3::splat(0.5), 1));
-        world.insert(RigidBodyBuilder::fixed().translation(Vector::Y * -0.5), floor);
-        let watched = (0..BOXES).map(|index| {
+        let cubes = (0..BOXES).map(|index| {
             let height = 0.5 + GAP + index as Real * (1.0 + GAP);
-            let body = RigidBodyBuilder::dynamic().translation(Vector::Y * height);
-            world.insert(body, cube.clone()).0
+            (RigidBodyBuilder::dynamic().translation(Vector::Y * height), cube.clone())
         });
-        let watched = watched.collect();
-        SceneWorld { world, watched }
+        SceneWorld::on((RigidBodyBuilder::fixed().translation(Vector::Y * -0.5), floor), cubes)
     }
 }
 
@@ -52,15 +47,11 @@ impl Scene for HeadOnSlope {
     }
 
     fn build(&self) -> SceneWorld {
-        let mut world = PhysicsWorld::new();
         let incline = Pose3::rotation(Vector::Z * self.angle);
-        let floor = collider(&mesh::floor(20.0, 20));
-        world.insert(RigidBodyBuilder::fixed().pose(incline), floor);
+        let floor = (RigidBodyBuilder::fixed().pose(incline), collider(&mesh::floor(20.0, 20)));
         let head = mesh::monkey_head().centred().scaled_to(2.0);
         // Upright in the frame of the slope, a hundredth of a unit above it.
         let pose = incline * Pose3::translation(0.0, 0.01 - head.bounds().mins.y, 0.0);
-        let body = RigidBodyBuilder::dynamic().pose(pose);
-        let (body, _) = world.insert(body, collider(&head));
-        SceneWorld { world, watched: vec![body] }
+        SceneWorld::on(floor, [(RigidBodyBuilder::dynamic().pose(pose), collider(&head))])
     }
 }

@@ -1,8 +1,7 @@
 //! The points of a manifold against the polygon where the shadows overlap, found by clipping one
 //! shadow at the edges of the other (I. Sutherland, G. Hodgman, 1974).
 
-use super::check::{TOLERANCE, Triangle, part, size};
-use super::strategies::{point, triangle};
+use super::check::{TOLERANCE, Triangle, part, point, size, triangle};
 use crate::prelude::*;
 use glamx::DVec2;
 use proptest::prelude::*;

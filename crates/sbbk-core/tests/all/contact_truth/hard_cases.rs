@@ -1,7 +1,6 @@
 //! Cases where generators of contacts go wrong, each with its reason.
 
-use super::check::{Triangle, check};
-use super::strategies::{decades, flat_triangle, point, rotation, triangle};
+use super::check::{Triangle, check, decades, flat_triangle, point, rotation, triangle};
 use crate::prelude::*;
 use proptest::prelude::*;
 use sbbk_core::contact::{contact, contact_from};

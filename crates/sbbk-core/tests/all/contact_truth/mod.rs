@@ -5,4 +5,3 @@ mod clip;
 mod hard_cases;
 mod lattice;
 mod random;
-mod strategies;

@@ -1,7 +1,6 @@
 //! Random triangles of all shapes, sizes and distances.
 
-use super::check::{check, size};
-use super::strategies::{decades, point, triangle};
+use super::check::{check, decades, point, size, triangle};
 use crate::prelude::*;
 use proptest::prelude::*;
 use sbbk_core::contact::contact;

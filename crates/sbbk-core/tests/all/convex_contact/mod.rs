@@ -6,7 +6,6 @@ mod curved;
 mod degenerate;
 mod drawn;
 mod invariance;
-mod lattice;
 mod random;
 mod shape;
 mod truth;

@@ -1,18 +1,41 @@
-//! The paper's second experiment (section 4.2, figure 8): many monkey heads dropped at once.
+//! The paper's experiments: a ball on a helicopter's rotor, and many monkey heads dropped at once.
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
-use rapier3d::math::Vector;
-use rapier3d::pipeline::PhysicsWorld;
 
 use super::random::rotation;
 use super::{Scene, SceneWorld, collider};
 use crate::mesh::{self, Mesh};
 
-/// Heads released at once from a loose grid above a floor, so that they fall and collide with it
-/// and with each other.
+/// The first experiment (section 4.1, figure 5). A mesh ball falls, by gravity alone, on the rotor of a fixed helicopter, bounces and rolls off.
+#[derive(Clone, Copy, Debug)]
+pub struct HelicopterBallDrop;
+
+/// Radius of the ball, in units.
+const RADIUS: f32 = 0.25;
+/// Subdivision of the mesh ball: 8 * 12 * 12 = 1152 triangles.
+const DETAIL: u32 = 12;
+/// Centre of the ball at the start: half a unit above a blade, near the hub.
+const START: Vec3 = Vec3::new(-1.0416353, 2.77, 0.0023176167);
+
+impl Scene for HelicopterBallDrop {
+    fn name(&self) -> String {
+        let ball = 8 * DETAIL * DETAIL;
+        let helicopter = mesh::helicopter().triangle_count();
+        format!("ball of {ball} triangles, helicopter of {helicopter} triangles")
+    }
+
+    fn build(&self) -> SceneWorld {
+        let ball = collider(&mesh::ball(RADIUS, DETAIL)).restitution(0.4);
+        let ground = (RigidBodyBuilder::fixed(), collider(&mesh::helicopter()));
+        SceneWorld::on(ground, [(RigidBodyBuilder::dynamic().translation(START), ball)])
+    }
+}
+
+/// The second experiment (section 4.2, figure 8). Heads are released at once from a loose grid above a
+/// floor, so that they fall and collide with it and with each other.
 ///
 /// The grid has five layers, each about square. Its cells are just larger than the head's sphere,
 /// so that no two heads touch at the start. Orientations are random. The lowest layer is half a cell
@@ -87,21 +110,15 @@ impl Scene for MonkeyPile {
     }
 
     fn build(&self) -> SceneWorld {
-        let mut world = PhysicsWorld::new();
-        world.integration_parameters.contact_recycling = self.contact_recycling;
         let cell = self.cell();
         // Leaves as much room beside the grid as it is wide or high.
         let side = 2.0 * cell * self.columns().max(LAYERS) as f32;
-        world.insert(
-            RigidBodyBuilder::fixed().translation(Vector::Y * -cell),
-            ColliderBuilder::cuboid(side, cell, side),
-        );
+        let floor = RigidBodyBuilder::fixed().translation(Vec3::Y * -cell);
         let head = collider(&self.mesh);
-        let watched = self.poses().into_iter().map(|pose| {
-            let body = RigidBodyBuilder::dynamic().pose(pose);
-            world.insert(body, head.clone()).0
-        });
-        let watched = watched.collect();
-        SceneWorld { world, watched }
+        let placed = |pose| (RigidBodyBuilder::dynamic().pose(pose), head.clone());
+        let heads = self.poses().into_iter().map(placed);
+        let mut built = SceneWorld::on((floor, ColliderBuilder::cuboid(side, cell, side)), heads);
+        built.world.integration_parameters.contact_recycling = self.contact_recycling;
+        built
     }
 }
