@@ -4,12 +4,9 @@ use rapier3d::parry::query::ContactManifold;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Marks manifolds and points, to see which of them survive.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Marker(u32);
-
-type MarkedPair = Pair<Marker, Marker>;
-type MarkedManifold = ContactManifold<Marker, Marker>;
+/// Marks of manifolds and points tell which of them survive.
+type MarkedPair = Pair<u32, u32>;
+type MarkedManifold = ContactManifold<u32, u32>;
 
 impl MarkedPair {
     /// Gives each manifold and each point another mark; mark 0 is left for new ones. Returns the
@@ -17,10 +14,8 @@ impl MarkedPair {
     fn mark(&mut self) -> Vec<MarkedManifold> {
         let mut next = 1..;
         for manifold in &mut self.manifolds {
-            manifold.data = Marker(next.next().unwrap());
-            for point in &mut manifold.points {
-                point.data = Marker(next.next().unwrap());
-            }
+            manifold.data = next.next().unwrap();
+            manifold.points.iter_mut().for_each(|point| point.data = next.next().unwrap());
         }
         self.manifolds.clone()
     }
@@ -28,14 +23,14 @@ impl MarkedPair {
     /// Panics unless manifolds have their marks by their triangles, and points by their features.
     /// Returns the number of known and of new points.
     fn check_marks(&self, before: &[MarkedManifold]) -> [usize; 2] {
-        let fids = |point: &TrackedContact<Marker>| [point.fid1, point.fid2];
+        let fids = |point: &TrackedContact<u32>| [point.fid1, point.fid2];
         let (before, mut counts) = (by_triangles(before), [0; 2]);
         for manifold in &self.manifolds {
             let old = before.get(&triangles(manifold));
-            assert_eq!(manifold.data, old.map_or(Marker(0), |old| old.data));
+            assert_eq!(manifold.data, old.map_or(0, |old| old.data));
             for point in &manifold.points {
                 let known = old.and_then(|old| old.points.iter().find(|p| fids(p) == fids(point)));
-                assert_eq!(point.data, known.map_or(Marker(0), |point| point.data));
+                assert_eq!(point.data, known.map_or(0, |point| point.data));
                 counts[usize::from(known.is_none())] += 1;
             }
         }
@@ -112,7 +107,7 @@ fn with_a_foreign_workspace_manifolds_keep_their_data() {
     assert_same(&pair.manifolds, &query.fresh(&every()), 0.0);
     let [kept, _] = pair.check_marks(&before);
     assert!(kept > 0, "no point has the feature ids that stock gives");
-    assert!(pair.manifolds.iter().all(|manifold| manifold.data != Marker(0)), "stock has it");
+    assert!(pair.manifolds.iter().all(|manifold| manifold.data != 0), "stock has it");
 }
 
 /// Would catch impulses lost or given to another point while bodies move.

@@ -7,7 +7,7 @@ use sbbk_lab::mesh;
 use sbbk_lab::progress::Progress;
 use sbbk_lab::report::{Results, Row, tables};
 use sbbk_lab::study::compare::{ComparePlan, compare};
-use sbbk_lab::study::contacts::{ApproachedMesh, ContactsPlan, contacts};
+use sbbk_lab::study::contacts::{ContactsPlan, contacts};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
 use sbbk_lab::study::everyday::{EverydayPlan, Subject, advise, everyday};
 use sbbk_lab::study::hard::random::{Family, RandomPlan, random};
@@ -40,8 +40,8 @@ fn compare_measures_both_experiments_of_the_paper() {
 
 #[test]
 fn contacts_are_judged_in_every_case() {
-    let mesh = ApproachedMesh { mesh: mesh::monkey_head_with(6), approach_count: 1 };
-    let plan = ContactsPlan { meshes: vec![mesh], ..ContactsPlan::quick() };
+    let meshes = vec![(mesh::monkey_head_with(6), 1)];
+    let plan = ContactsPlan { meshes, ..ContactsPlan::quick() };
     let results = contacts(&plan, &Progress::hidden());
     let [stock, sbbk] = check(&results, &["errors"]);
     assert!(stock > 500 && sbbk == 0, "{stock} {sbbk}");

@@ -14,20 +14,11 @@ const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";
 const DEFAULTS: &str = "contacts: queries with the default settings, µs";
 
-/// A mesh and its approaches.
-#[derive(Clone, Debug)]
-pub struct ApproachedMesh {
-    /// The mesh, which is scaled to each size.
-    pub mesh: Mesh,
-    /// Approaches in each case, of five poses each.
-    pub approach_count: usize,
-}
-
 /// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct ContactsPlan {
-    /// The meshes, in the order of the tables.
-    pub meshes: Vec<ApproachedMesh>,
+    /// The meshes, in the order of the tables, and their approaches in each case, of five poses each.
+    pub meshes: Vec<(Mesh, usize)>,
     /// Least number of repeats of times.
     pub repeats: usize,
 }
@@ -52,15 +43,14 @@ const HALVINGS: i32 = 7;
 impl ContactsPlan {
     /// Six meshes of 288 to 70,688 triangles in 1125 poses; about three minutes on two cores.
     pub fn standard() -> Self {
-        let approached = |mesh, approach_count| ApproachedMesh { mesh, approach_count };
         Self {
             meshes: vec![
-                approached(mesh::monkey_head_with(6), 8),
-                approached(mesh::monkey_head_with(11), 6),
-                approached(mesh::helicopter(), 4),
-                approached(mesh::torus(0.7, 0.3, 72, 35), 4),
-                approached(mesh::monkey_head_with(50), 2),
-                approached(mesh::monkey_head_with(94), 1),
+                (mesh::monkey_head_with(6), 8),
+                (mesh::monkey_head_with(11), 6),
+                (mesh::helicopter(), 4),
+                (mesh::torus(0.7, 0.3, 72, 35), 4),
+                (mesh::monkey_head_with(50), 2),
+                (mesh::monkey_head_with(94), 1),
             ],
             repeats: 5,
         }
@@ -69,15 +59,15 @@ impl ContactsPlan {
     /// The four smaller meshes with one approach each, half a minute: for trying, not for quoting.
     pub fn quick() -> Self {
         let small = Self::standard().meshes.into_iter().take(4);
-        let meshes = small.map(|mesh| ApproachedMesh { approach_count: 1, ..mesh }).collect();
-        Self { meshes, repeats: 3 }
+        Self { meshes: small.map(|(mesh, _)| (mesh, 1)).collect(), repeats: 3 }
     }
 }
 
 /// A mesh at one size against itself, with one prediction distance.
 #[derive(Clone)]
 struct Case<'a> {
-    mesh: &'a ApproachedMesh,
+    mesh: &'a Mesh,
+    approach_count: usize,
     size: Real,
     prediction: Real,
     shape: SharedShape,
@@ -89,11 +79,12 @@ struct Case<'a> {
 /// Judges all cases, and measures the times at Rapier's defaults.
 pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     let mut cases = Vec::new();
-    for mesh in &plan.meshes {
+    for &(ref mesh, approach_count) in &plan.meshes {
         for size in SIZES {
-            let shape = mesh.mesh.clone().centred().scaled_to(size).shape();
+            let shape = mesh.clone().centred().scaled_to(size).shape();
             cases.extend(PREDICTIONS.map(|prediction| Case {
                 mesh,
+                approach_count,
                 size,
                 prediction,
                 shape: shape.clone(),
@@ -128,7 +119,7 @@ impl Case<'_> {
     /// Finds the places and judges first queries there. The seeds of a case depend on its index, and
     /// not on the order in which threads take cases.
     fn judged(mut self, index: usize, sides: &[Dispatcher; 2]) -> Self {
-        let seeds = (0..self.mesh.approach_count).map(|approach| (index << 16 | approach) as u64);
+        let seeds = (0..self.approach_count).map(|approach| (index << 16 | approach) as u64);
         self.places = seeds.flat_map(|seed| self.places_of(&sides[1], seed)).collect();
         self.errors = Sequence::errors(&self.sequences(Mode::Fresh, usize::MAX), sides, |_| true);
         self
@@ -157,8 +148,8 @@ impl Case<'_> {
     }
 
     fn row(&self, study: &'static str, backend: impl ToString) -> Row {
-        let row = Row::new(study, backend).key("mesh", &self.mesh.mesh.name);
-        row.key("triangle_count", self.mesh.mesh.triangle_count())
+        let row = Row::new(study, backend).key("mesh", &self.mesh.name);
+        row.key("triangle_count", self.mesh.triangle_count())
     }
 
     fn exactness(&self) -> Vec<Row> {
@@ -179,7 +170,7 @@ impl Case<'_> {
         by_default: &[Dispatcher; 2],
         repeats: usize,
     ) -> Vec<Row> {
-        let affordable = REPEATED_TRIANGLES / self.mesh.mesh.triangle_count().max(1);
+        let affordable = REPEATED_TRIANGLES / self.mesh.triangle_count().max(1);
         let repeats = affordable.min(MOST_REPEATS).max(repeats);
         let mut rows = Vec::new();
         for mode in Mode::ALL {

@@ -24,50 +24,44 @@ struct Rider {
     turn: fn(&mut Rand32) -> Quat,
 }
 
-const RIDERS: [Rider; 6] = {
-    let slider = Rider {
-        name: "cube slides",
-        is_mesh: true,
-        rolls: false,
-        starts: 1,
-        collider: |kit| kit.collider(&Form::cuboid(Vec3::splat(0.5), 4)),
-        turn: |random| Quat::from_rotation_y(random.rand_float()),
-    };
-    let ball = Rider { rolls: true, turn: random::rotation, ..slider };
-    let lying = Rider { is_mesh: false, turn: |_| Quat::from_rotation_x(FRAC_PI_2), ..ball };
-    [
-        slider,
-        // Rolls as the mesh that it is, in the control as well.
-        Rider {
-            name: "ball rolls",
-            starts: 12,
-            collider: |kit| kit.mesh(&mesh::ball(1.0, 32)),
-            ..ball
-        },
-        Rider {
-            name: "cuboid slides",
-            is_mesh: false,
-            collider: |_| ColliderBuilder::cuboid(0.5, 0.5, 0.5),
-            ..slider
-        },
-        Rider {
-            name: "smooth ball rolls",
-            is_mesh: false,
-            collider: |_| ColliderBuilder::ball(1.0),
-            ..ball
-        },
-        Rider {
-            name: "capsule rolls",
-            collider: |_| ColliderBuilder::capsule_y(1.0, 1.0),
-            ..lying
-        },
-        Rider {
-            name: "cylinder rolls",
-            collider: |_| ColliderBuilder::cylinder(1.0, 1.0),
-            ..lying
-        },
-    ]
+const SLIDER: Rider = Rider {
+    name: "cube slides",
+    is_mesh: true,
+    rolls: false,
+    starts: 1,
+    collider: |kit| kit.collider(&Form::cuboid(Vec3::splat(0.5), 4)),
+    turn: |random| Quat::from_rotation_y(random.rand_float()),
 };
+const BALL: Rider = Rider {
+    name: "smooth ball rolls",
+    is_mesh: false,
+    rolls: true,
+    collider: |_| ColliderBuilder::ball(1.0),
+    turn: random::rotation,
+    ..SLIDER
+};
+const LYING: Rider = Rider { turn: |_| Quat::from_rotation_x(FRAC_PI_2), ..BALL };
+
+const RIDERS: [Rider; 6] = [
+    SLIDER,
+    // Rolls as the mesh that it is, in the control as well.
+    Rider {
+        name: "ball rolls",
+        is_mesh: true,
+        starts: 12,
+        collider: |kit| kit.mesh(&mesh::ball(1.0, 32)),
+        ..BALL
+    },
+    Rider {
+        name: "cuboid slides",
+        is_mesh: false,
+        collider: |_| ColliderBuilder::cuboid(0.5, 0.5, 0.5),
+        ..SLIDER
+    },
+    BALL,
+    Rider { name: "capsule rolls", collider: |_| ColliderBuilder::capsule_y(1.0, 1.0), ..LYING },
+    Rider { name: "cylinder rolls", collider: |_| ColliderBuilder::cylinder(1.0, 1.0), ..LYING },
+];
 
 pub(super) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();

@@ -53,7 +53,6 @@ impl OneStepPlan {
     }
 }
 
-const STUDY: &str = "one step";
 /// Backend of the run and of the reference: one with every contact.
 const REFERENCE: Backend = Backend::Every;
 /// Steps before the measured one, in which bodies are led and impulses grow.
@@ -129,7 +128,7 @@ fn step(scene: &dyn Scene, way: &Way, lead: &[Vec<Motion>]) -> (Vec<Motion>, Led
 }
 
 fn row(scene: &dyn Scene, way: &Way, seen: Seen) -> Row {
-    Row::new(STUDY, way.backend)
+    Row::new("one step", way.backend)
         .key("scene", scene.name())
         .key("substeps", way.substeps)
         .with("error", Summary::of(seen.errors))
