@@ -22,6 +22,10 @@ fn slab() -> Mesh {
     mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1)
 }
 
+fn cube() -> Mesh {
+    mesh::cuboid(Vec3::splat(0.5), 1)
+}
+
 /// A square of upright boxes, whose width is a share of their distance.
 fn grid(count: u32, share: f32) -> Mesh {
     let rows = (count as f32 / 12.0).sqrt() as u32;
@@ -49,6 +53,10 @@ fn case(mesh1: &Mesh, shape2: impl Shape, place: Vec3) -> Case {
     (Box::new(shape(mesh1)), Box::new(shape2), Pose::from_parts(place, Quat::IDENTITY))
 }
 
+fn on_slab(mesh: &Mesh, place: [f32; 3]) -> Case {
+    case(&slab(), shape(mesh), Vec3::from(place))
+}
+
 /// Makes a case of about so many triangles.
 type Family = (&'static str, fn(u32) -> Case);
 
@@ -56,18 +64,14 @@ const FAMILIES: &[Family] = &[
     ("scan 5 mm deep in a slab of 12", |count| {
         let cells = (count as f32 / 12.0).sqrt() as u32;
         let scan = mesh::cuboid(Vec3::splat(0.5), cells);
-        case(&slab(), shape(&scan), Vec3::new(0.1, 0.995, 0.2))
+        on_slab(&scan, [0.1, 0.995, 0.2])
     }),
     ("terrain that crosses a slab of 12", |count| {
         let terrain = mesh::terrain(3.0, (count as f32 / 2.0).sqrt() as u32, 0.05);
-        case(&slab(), shape(&terrain), Vec3::new(0.0, 0.5, 0.0))
+        on_slab(&terrain, [0.0, 0.5, 0.0])
     }),
-    ("tip of a cone on a slab", |count| {
-        case(&slab(), shape(&cone(count / 2)), Vec3::new(0.1, 0.501, 0.2))
-    }),
-    ("tip of a cone in a slab", |count| {
-        case(&slab(), shape(&cone(count / 2)), Vec3::new(0.1, 0.49, 0.2))
-    }),
+    ("tip of a cone on a slab", |count| on_slab(&cone(count / 2), [0.1, 0.501, 0.2])),
+    ("tip of a cone in a slab", |count| on_slab(&cone(count / 2), [0.1, 0.49, 0.2])),
     ("flat fan and a mesh cube", |count| {
         case(&fan(count, 0.0), shape(&mesh::cuboid(Vec3::splat(0.3), 1)), 0.301 * Vec3::Y)
     }),
@@ -88,33 +92,21 @@ const FAMILIES: &[Family] = &[
         let parts = (0..rows * rows).map(|i| (Pose::from_translation(place(i)), plate.clone()));
         case(&mesh::floor(4.0, 4), Compound::new(parts.collect()), 1.0105 * Vec3::Y)
     }),
-    ("layers on a slab", |count| {
-        let cube = layers(&mesh::cuboid(Vec3::splat(0.5), 1), count / 12);
-        case(&slab(), shape(&cube), Vec3::new(0.1, 1.001, 0.2))
-    }),
-    ("layers in a slab", |count| {
-        let cube = layers(&mesh::cuboid(Vec3::splat(0.5), 1), count / 12);
-        case(&slab(), shape(&cube), Vec3::new(0.1, 0.98, 0.2))
-    }),
-    ("strip of slivers on a slab", |count| {
-        case(&slab(), shape(&strip(count)), Vec3::new(0.1, 0.501, 0.2))
-    }),
+    ("layers on a slab", |count| on_slab(&layers(&cube(), count / 12), [0.1, 1.001, 0.2])),
+    ("layers in a slab", |count| on_slab(&layers(&cube(), count / 12), [0.1, 0.98, 0.2])),
+    ("strip of slivers on a slab", |count| on_slab(&strip(count), [0.1, 0.501, 0.2])),
     ("row of thin boxes in a slab", |count| {
         let step = 24.0 / count as f32;
         let at = |i: u32| Vec3::X * (step * i as f32 - 1.0);
         let row = boxes((0..count / 12).map(|i| (at(i), Vec3::new(0.1 * step, 0.5, 0.5))));
-        case(&slab(), shape(&row), Vec3::new(0.1, 0.98, 0.2))
+        on_slab(&row, [0.1, 0.98, 0.2])
     }),
-    ("grid of thin boxes in a slab", |count| {
-        case(&slab(), shape(&grid(count, 0.2)), Vec3::new(0.1, 0.98, 0.2))
-    }),
-    ("thin pins in a slab", |count| {
-        case(&slab(), shape(&grid(count, 0.01)), Vec3::new(0.1, 0.98, 0.2))
-    }),
+    ("grid of thin boxes in a slab", |count| on_slab(&grid(count, 0.2), [0.1, 0.98, 0.2])),
+    ("thin pins in a slab", |count| on_slab(&grid(count, 0.01), [0.1, 0.98, 0.2])),
     ("boxes within boxes in a slab", |count| {
         let half = |i: u32| Vec3::splat(6.0 * (i + 1) as f32 / count as f32);
         let nest = boxes((0..count / 12).map(|i| (Vec3::ZERO, half(i))));
-        case(&slab(), shape(&nest), Vec3::new(0.1, 0.501, 0.2))
+        on_slab(&nest, [0.1, 0.501, 0.2])
     }),
     ("layers and a cuboid", |count| {
         let slab = layers(&slab(), count / 12);
