@@ -83,7 +83,7 @@ pub(super) fn environment() -> String {
     format!("{cpu}, {cores} cores; Rapier {rapier}; {rustc}; {profile}, {simd}")
 }
 
-/// What a program prints; nothing if there is no such program.
+/// Returns what a program prints. Empty if there is no such program.
 fn said_by(program: &str, arguments: &[&str]) -> String {
     let output = Command::new(program).args(arguments).output();
     let text = output.ok().and_then(|output| String::from_utf8(output.stdout).ok());
