@@ -14,7 +14,6 @@ use super::ghosts::{GhostContacts, UprightContact, corner_key};
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::box_between;
 use crate::pair::borders::lead_one_way;
-use crate::pair::query::ContactList;
 
 /// Lists of contacts up to this length are searched linearly.
 const LINEAR_SEARCH: usize = 64;
@@ -55,18 +54,20 @@ impl ConvexQuery<'_> {
         }
     }
 
-    /// Replaces the normals of ghost contacts.
+    /// Replaces the normals of ghost contacts and of contacts at borders.
     pub(super) fn correct_ghosts(
         &self,
-        contacts: &mut ContactList<PartContact>,
+        contacts: &mut [([u32; 2], PartContact)],
         scratch: &mut ConvexScratch,
     ) {
         let is_at_border =
             |(_, contact): &([u32; 2], PartContact)| contact.feature != Feature::Face;
+        let mut ghosts = std::mem::take(&mut scratch.ghosts);
         if !self.pair.has_surface() || !contacts.iter().any(is_at_border) {
+            ghosts.clear();
+            scratch.ghosts = ghosts;
             return;
         }
-        let mut ghosts = std::mem::take(&mut scratch.ghosts);
         self.find_ghosts(&mut ghosts, contacts, scratch);
         for &(index, wall) in &ghosts.walls {
             contacts[index as usize].1.contact = wall;
@@ -80,9 +81,6 @@ impl ConvexQuery<'_> {
                 contacts[contact].1 = contacts[contact].1.with_normal_of(&source);
             }
         }
-        let past = ghosts.upright.iter().filter(|upright| upright.is_past);
-        let (mut indices, mut past) = (0.., past.map(|upright| upright.index).peekable());
-        contacts.retain(|_| past.next_if_eq(&indices.next().unwrap_or_default()).is_none());
         scratch.ghosts = ghosts;
     }
 
@@ -121,7 +119,7 @@ impl ConvexQuery<'_> {
     fn turn_at_borders(
         &self,
         ghosts: &mut GhostContacts,
-        contacts: &mut ContactList<PartContact>,
+        contacts: &mut [([u32; 2], PartContact)],
         scratch: &mut ConvexScratch,
     ) {
         let GhostContacts { borders, sources, upright, .. } = ghosts;
@@ -162,7 +160,7 @@ impl ConvexQuery<'_> {
     fn turn_to_faces(
         &self,
         ghosts: &mut GhostContacts,
-        contacts: &mut ContactList<PartContact>,
+        contacts: &mut [([u32; 2], PartContact)],
         scratch: &mut ConvexScratch,
     ) {
         for i in 0..ghosts.on_faces.len() {

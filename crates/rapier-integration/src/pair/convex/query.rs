@@ -186,7 +186,7 @@ impl PairQuery for ConvexQuery<'_> {
             contacts.clear();
             contacts.push((mesh_place.swap([triangle, 0]), contact));
         }
-        self.correct_ghosts(contacts, scratch);
+        self.correct(contacts, scratch);
         true
     }
 
@@ -225,8 +225,7 @@ impl PairQuery for ConvexQuery<'_> {
         }
         self.drop_walls(contacts, scratch);
         self.add_push_outs(contacts, scratch);
-        self.correct_ghosts(contacts, scratch);
-        self.keep_one_way(contacts, scratch);
+        self.correct(contacts, scratch);
     }
 
     /// Makes patches unless the mesh is soft or the shape is a ball, which has few contacts of one point.
@@ -263,6 +262,17 @@ impl PairQuery for ConvexQuery<'_> {
 }
 
 impl ConvexQuery<'_> {
+    /// Corrects ghosts, and removes contacts that lead past a border or that one way lifts over.
+    fn correct(&self, contacts: &mut ContactList<PartContact>, scratch: &mut ConvexScratch) {
+        scratch.walls.begin(contacts.len());
+        self.correct_ghosts(contacts, scratch);
+        self.find_lifted(contacts, scratch);
+        for upright in scratch.ghosts.upright.iter().filter(|upright| upright.is_past) {
+            scratch.walls.removed[upright.index as usize] = true;
+        }
+        scratch.walls.remove_from(contacts);
+    }
+
     /// Returns the normal of a contact in the axes of the mesh. A single part needs no common axes and keeps its own.
     pub(super) fn shared_normal(
         &self,

@@ -12,7 +12,7 @@ use crate::mesh::{LazySurface, is_covered};
 use crate::pair::query::ContactList;
 use crate::pair::reduce::EQUAL_DEPTH;
 use crate::pair::shapes::{LIP, filter_distance, filter_unit};
-use crate::pair::ways::{ALIKE, SAME_SIDE, Ways};
+use crate::pair::ways::{ALIKE, SAME_DIRECTION, SAME_SIDE, Ways};
 
 /// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher: bodies catch on walls behind
 /// the edge that they slide over. Lower: rounding decides about contacts along the surface.
@@ -22,6 +22,10 @@ const TANGENTIAL: f64 = 1.0e-4;
 /// foot of a low step behind the edge that they slide over.
 const NEARER: f64 = 1.0 - 1.0e-6;
 
+/// Ratio of two distances up to which the first one is not greater. Higher: contacts apart are lost. Lower: rounding keeps contacts at the
+/// foot of a chamfer that the body slides over.
+const NO_FARTHER: f64 = 1.0 + 1.0e-6;
+
 /// A contact and its subshapes.
 type Hit = ([u32; 2], PartContact);
 
@@ -29,11 +33,25 @@ type Hit = ([u32; 2], PartContact);
 #[derive(Default)]
 pub(super) struct WallMemory {
     /// True for each contact that is removed.
-    removed: Vec<bool>,
+    pub(super) removed: Vec<bool>,
     /// Contacts apart, the nearest first.
     apart: Vec<usize>,
     /// Ways out of the triangles, by part.
     ways: Ways,
+}
+
+impl WallMemory {
+    /// Begins with no contact marked.
+    pub(super) fn begin(&mut self, count: usize) {
+        self.removed.clear();
+        self.removed.resize(count, false);
+    }
+
+    /// Removes the marked contacts.
+    pub(super) fn remove_from(&self, contacts: &mut ContactList<PartContact>) {
+        let mut removed = self.removed.iter();
+        contacts.retain(|_| removed.next() != Some(&true));
+    }
 }
 
 impl ConvexQuery<'_> {
@@ -48,23 +66,29 @@ impl ConvexQuery<'_> {
         // A ball has one point, and rolls over walls within a mesh.
         let is_exempt = self.pair.is_ball() && !self.pair.config.leave_solids();
         let Some(surface) = self.surface.as_ref().filter(|_| !is_exempt) else { return };
-        if !self.push_different_ways(contacts, scratch) || surface.kind() == SurfaceKind::Sheet {
+        if !self.push_different_ways(contacts, SAME_WAY, scratch)
+            || surface.kind() == SurfaceKind::Sheet
+        {
             return;
         }
         let mut removed = std::mem::take(&mut scratch.walls.removed);
         self.find_walls(surface, contacts, scratch, &mut removed);
         if removed.contains(&true) {
-            self.find_behind(contacts, scratch, &mut removed);
-            let mut removed = removed.iter();
-            contacts.retain(|_| removed.next() != Some(&true));
+            self.find_behind(contacts, NEARER, scratch, &mut removed);
         }
         scratch.walls.removed = removed;
+        scratch.walls.remove_from(contacts);
     }
 
-    fn push_different_ways(&self, contacts: &[Hit], scratch: &mut ConvexScratch) -> bool {
+    fn push_different_ways(
+        &self,
+        contacts: &[Hit],
+        cosine: f64,
+        scratch: &mut ConvexScratch,
+    ) -> bool {
         let mut normals =
             contacts.iter().map(|(of, hit)| self.shared_normal(*of, &hit.contact, scratch));
-        normals.next().is_some_and(|first| normals.any(|normal| first.dot(normal) < SAME_WAY))
+        normals.next().is_some_and(|first| normals.any(|normal| first.dot(normal) < cosine))
     }
 
     /// Finds contacts of walls within the body, and contacts that lead into the body. Crossing triangles keep contacts that lead in
@@ -95,12 +119,19 @@ impl ConvexQuery<'_> {
     }
 
     /// Finds contacts apart at whose points the triangle of a removed contact is nearer. The way to them leads through that triangle.
-    fn find_behind(&self, contacts: &[Hit], scratch: &mut ConvexScratch, removed: &mut [bool]) {
+    fn find_behind(
+        &self,
+        contacts: &[Hit],
+        near: f64,
+        scratch: &mut ConvexScratch,
+        removed: &mut [bool],
+    ) {
         let distance = |i: usize| contacts[i].1.contact.distance;
         let mut apart = std::mem::take(&mut scratch.walls.apart);
         apart.clear();
-        let may_be_behind =
-            |&i: &usize| distance(i) > 0.0 && contacts[i].1.feature != Feature::Face;
+        let may_be_behind = |&i: &usize| {
+            self.depth(&contacts[i], scratch) <= 0.0 && contacts[i].1.feature != Feature::Face
+        };
         apart.extend((0..contacts.len()).filter(may_be_behind));
         apart.sort_unstable_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         // All triangles at a vertex have the same contact there.
@@ -114,7 +145,7 @@ impl ConvexQuery<'_> {
                 let mut is_behind = false;
                 self.strays_at(contacts, *of, place, seam, |other| {
                     let other = other as usize;
-                    is_behind |= removed[other] && distance(other) < NEARER * contact.distance;
+                    is_behind |= removed[other] && distance(other) < near * contact.distance;
                 });
                 (place, is_behind)
             }));
@@ -156,29 +187,30 @@ impl ConvexQuery<'_> {
         is_within.flatten() == Some(true)
     }
 
-    /// Removes contacts that push aside where one [way](crate::pair::ways) parts a part from all triangles that it crosses. Contacts
-    /// apart that this way lifts over their triangles go, too.
-    pub(super) fn keep_one_way(
-        &self,
-        contacts: &mut ContactList<PartContact>,
-        scratch: &mut ConvexScratch,
-    ) {
+    /// Marks contacts that push aside where one [way](crate::pair::ways) parts a part from all triangles that it crosses. Also marks contacts
+    /// apart that this way lifts over their triangles, and ghosts of these.
+    pub(super) fn find_lifted(&self, contacts: &[Hit], scratch: &mut ConvexScratch) {
         let Some(surface) = self.surface.as_ref().filter(|_| !self.pair.is_ball()) else { return };
-        if !self.push_different_ways(contacts, scratch) {
+        if !self.push_different_ways(contacts, SAME_DIRECTION, scratch) {
             return;
         }
-        let mut ways = std::mem::take(&mut scratch.walls.ways);
+        let WallMemory { mut removed, mut ways, apart } = std::mem::take(&mut scratch.walls);
         self.find_ways(surface, contacts, &mut ways, scratch);
-        contacts.retain(|hit @ (of, PartContact { contact, .. })| {
+        for (is_removed, hit @ (of, PartContact { contact, .. })) in
+            removed.iter_mut().zip(contacts)
+        {
             let [_, part] = self.pair.mesh_place.swap(*of);
-            let Some((way, length)) = ways.least(part as usize) else { return true };
+            let Some((way, length)) = ways.least(part as usize) else { continue };
             let along = way.dot(contact.normal);
-            if self.depth(hit, scratch) > 0.0 {
-                return along >= SAME_SIDE;
-            }
-            along.abs() >= SAME_SIDE || !self.parts(surface, hit, (way, length), scratch)
-        });
-        scratch.walls.ways = ways;
+            *is_removed |= if self.depth(hit, scratch) > 0.0 {
+                along < SAME_SIDE
+            } else {
+                along < SAME_DIRECTION && self.parts(surface, hit, (way, length), scratch)
+            };
+        }
+        scratch.walls = WallMemory { ways, apart, ..Default::default() };
+        self.find_behind(contacts, NO_FARTHER, scratch, &mut removed);
+        scratch.walls.removed = removed;
     }
 
     /// Finds the ways that part each part from all triangles that it crosses. Contacts that hardly hover know ways, too.
