@@ -124,6 +124,33 @@ fn bodies_over_a_gap_do_not_meet_its_far_wall() {
     assert!(count > 1000 && 1000 * aside <= count, "{aside} of {count} aside");
 }
 
+/// Flat bodies on two blocks with chamfers of 1 cm, before the chamfer on the far side of the gap. Would catch contacts with this chamfer or
+/// with the wall below. Such contacts launch bodies that slide over the gap.
+#[test]
+fn bodies_over_a_gap_do_not_meet_its_far_chamfer() {
+    let bodies = bodies(Vec3::new(0.3, 0.1, 0.2), ("cone", SharedShape::cone(0.1, 0.3)));
+    let outline = [[0.49, 0.5], [-0.49, 0.5], [-0.5, 0.49], [-0.5, -0.5], [0.5, -0.5], [0.5, 0.49]];
+    let block = mesh::prism(&outline.map(Vec2::from), 0.5);
+    let block = |x: Real| block.clone().mapped(|v| v + x * Vec3::X);
+    let ground = Mesh::merged("gap", &[block(-0.515), block(0.515)]).shape();
+    let (every, mut random) = (every(), Rand32::new(14));
+    let (mut count, mut aside) = (0, 0);
+    for i in 0..2000 {
+        let mut within = |low: Real, high: Real| low + (high - low) * random.rand_float();
+        let turn = Quat::from_rotation_y(within(-PI, PI));
+        let (_, body) = &bodies[i % bodies.len()];
+        let reach = body.compute_aabb(&Pose::from_rotation(turn)).maxs.x;
+        let place =
+            Vec3::new(within(0.0, 0.0244) - reach, 0.6 - within(5e-5, 5e-4), within(-0.2, 0.2));
+        let pose = Pose::from_parts(place, turn);
+        let found = Question::new(&*ground.0, &*body.0, pose).within(0.02).fresh(&every);
+        count += found.len();
+        aside += found.iter().filter(|manifold| manifold.local_n1.x < -0.3).count();
+    }
+    println!("{aside} of {count} aside");
+    assert!(count > 1000 && 1000 * aside <= count, "{aside} of {count} aside");
+}
+
 /// A block that goes down by a step at x = 0, and its ground alone.
 fn step_down(height: Real) -> [Mesh; 2] {
     // All of the outline is seen from the origin.

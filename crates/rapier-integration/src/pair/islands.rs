@@ -3,7 +3,7 @@ use rustc_hash::FxHashMap;
 use sbbk_core::collections::UnionFind;
 use sbbk_core::contact::DoubleCone;
 
-use super::ways::{SAME_DIRECTION, SAME_SIDE, Ways};
+use super::ways::{Directions, SAME_DIRECTION, SAME_SIDE, Ways};
 
 /// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
 /// contacts that push each island apart.
@@ -26,7 +26,7 @@ pub(crate) struct OverlapIslands {
     /// Final contacts, the least deep first.
     by_depth: Vec<usize>,
     /// Ways that part all pairs of an island at a small depth, and the depths.
-    one_ways: Vec<(DVec3, f64)>,
+    one_ways: Directions,
     /// Support of each island, at the index of its first crossing. Others have no pairs.
     support: Vec<Support>,
 }

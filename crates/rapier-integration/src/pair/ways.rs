@@ -1,11 +1,15 @@
 //! Ways out of overlaps, by group: the islands of two meshes, or the parts of a convex shape.
 //!
-//! One way may part all that overlaps in a group, at a depth that resting bodies have. Only contacts along it count then. The sides of a
-//! gap under a body that has sunk in by a millimetre stop the body otherwise.
+//! One way may end all overlaps of a group. If resting bodies are as deep, only contacts along this way count. Otherwise a body that has sunk in
+//! by a millimetre would stop at the sides of a gap.
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
+
+/// Greatest depth of resting bodies, in filter distances: a fiftieth of the radius. Higher: bodies deep in others leave along one way. Lower:
+/// heavy bodies stop at gaps.
+pub(super) const SMALL: f64 = 0.2;
 
 /// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor let go. Lower: edges that cross push
 /// each other aside.
@@ -42,11 +46,7 @@ impl Ways {
 
     /// Adds the direction of a contact.
     pub(super) fn add(&mut self, group: usize, normal: DVec3, depth: f64) {
-        let known = self.of(group);
-        match known.iter_mut().find(|(way, _)| way.dot(normal) >= SAME_DIRECTION) {
-            Some((_, greatest)) => *greatest = greatest.max(depth),
-            None => _ = known.try_push((normal, depth)),
-        }
+        add_direction(self.of(group), normal, depth);
     }
 
     /// Removes the ways that are deeper than `small`, and those that do not part an overlap with a contact along `normal`.
@@ -65,5 +65,13 @@ impl Ways {
     /// Returns the least deep way of a group.
     pub(super) fn least(&self, group: usize) -> Option<(DVec3, f64)> {
         self.0.get(&group)?.iter().copied().min_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+}
+
+/// Adds a direction and a depth. Like directions are one, with the greatest depth.
+pub(super) fn add_direction(known: &mut Directions, normal: DVec3, depth: f64) {
+    match known.iter_mut().find(|(way, _)| way.dot(normal) >= SAME_DIRECTION) {
+        Some((_, greatest)) => *greatest = greatest.max(depth),
+        None => _ = known.try_push((normal, depth)),
     }
 }

@@ -1,5 +1,5 @@
-//! Removes contacts with walls that are not in the way of a convex shape: walls within the mesh, walls behind an edge, and walls
-//! that one way lifts the shape over.
+//! Removes contacts with walls that are not in the way of a convex shape. These are walls within the mesh, walls behind an edge, and walls
+//! over which one way lifts the shape.
 
 use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
@@ -11,8 +11,8 @@ use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{LazySurface, is_covered};
 use crate::pair::query::ContactList;
 use crate::pair::reduce::EQUAL_DEPTH;
-use crate::pair::shapes::{LIP, filter_distance, filter_unit};
-use crate::pair::ways::{ALIKE, SAME_DIRECTION, SAME_SIDE, Ways};
+use crate::pair::shapes::{filter_distance, filter_unit};
+use crate::pair::ways::{ALIKE, SAME_DIRECTION, SAME_SIDE, SMALL, Ways};
 
 /// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher: bodies catch on walls behind
 /// the edge that they slide over. Lower: rounding decides about contacts along the surface.
@@ -187,8 +187,8 @@ impl ConvexQuery<'_> {
         is_within.flatten() == Some(true)
     }
 
-    /// Marks contacts that push aside where one [way](crate::pair::ways) parts a part from all triangles that it crosses. Also marks contacts
-    /// apart that this way lifts over their triangles, and ghosts of these.
+    /// Marks contacts that push aside, if one [way](crate::pair::ways) leads a part out of all triangles. Also marks contacts
+    /// apart over whose triangles the way lifts the part, and contacts behind them.
     pub(super) fn find_lifted(&self, contacts: &[Hit], scratch: &mut ConvexScratch) {
         let Some(surface) = self.surface.as_ref().filter(|_| !self.pair.is_ball()) else { return };
         if !self.push_different_ways(contacts, SAME_DIRECTION, scratch) {
@@ -229,7 +229,7 @@ impl ConvexQuery<'_> {
                 ways.add(part_of(*of), contact.normal, depth.max(0.0));
             }
         }
-        let small = LIP * self.filter_unit();
+        let small = SMALL * self.filter_distance();
         for hit @ (of, PartContact { contact, .. }) in contacts {
             if self.depth(hit, scratch) > 0.0 {
                 let parts = |way, length| self.parts(surface, hit, (way, length), scratch);
@@ -246,13 +246,12 @@ impl ConvexQuery<'_> {
 
     /// Returns the difference up to which two heights are equal.
     fn equal_height(&self) -> f64 {
-        f64::from(EQUAL_DEPTH) * self.filter_unit()
+        f64::from(EQUAL_DEPTH) * filter_unit(self.pair.pose, self.filter_distance())
     }
 
-    /// Returns the unit of the filter for the smaller shape.
-    fn filter_unit(&self) -> f64 {
-        let radius = self.pair.mesh.ball().radius.min(self.part_data.ball.radius);
-        filter_unit(self.pair.pose, filter_distance(true, radius))
+    /// Returns the filter distance of the smaller shape.
+    fn filter_distance(&self) -> f64 {
+        filter_distance(true, self.pair.mesh.ball().radius.min(self.part_data.ball.radius))
     }
 
     /// Returns true if a triangle, and the surface, end near the lowest point of a contact along a way. The way then parts both.

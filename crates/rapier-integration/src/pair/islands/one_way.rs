@@ -6,7 +6,7 @@
 use glamx::DVec3;
 
 use super::{Crossing, OverlapIslands};
-use crate::pair::ways::{SAME_DIRECTION, SAME_SIDE};
+use crate::pair::ways::{SAME_DIRECTION, SAME_SIDE, add_direction};
 
 /// Ratio of depths from which a shorter way out of an island is looked for. Higher: edges that cross push each other aside. Lower:
 /// more time for bodies in each other.
@@ -46,7 +46,7 @@ impl OverlapIslands {
         for (index, Crossing { normal, place, .. }) in crossings.iter_mut().enumerate() {
             let Some((way, depth)) = ways.least(place.island) else { continue };
             if place.island == index {
-                one_ways.push((way, depth));
+                add_direction(one_ways, way, depth);
             }
             place.is_rejected |= way.dot(*normal) < SAME_SIDE;
         }

@@ -1,7 +1,5 @@
 //! Contacts of meshes that overlap, after the first pass.
 
-use std::ops::RangeBounds;
-
 use glamx::DVec3;
 use sbbk_core::contact::ManifoldPoints;
 
@@ -9,9 +7,10 @@ use super::TriangleQuery;
 use crate::pair::deep::{self, ContourMemory};
 use crate::pair::islands::{Overlap, OverlapIslands};
 use crate::pair::query::ContactList;
-use crate::pair::shapes::{ContactSource, LIP, TriangleHit, TriangleSurfaceContact};
+use crate::pair::reduce::EQUAL_DEPTH;
+use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
-use crate::pair::ways::{ALIKE, SAME_SIDE};
+use crate::pair::ways::{ALIKE, SAME_DIRECTION, SMALL};
 
 /// Least cosine between a face and a direction that leads out of it rather than along it. Higher: deep boxes get contacts with the
 /// sides; lower: bodies in sockets lose contacts.
@@ -24,11 +23,9 @@ impl TriangleQuery<'_> {
         islands: &mut OverlapIslands,
         separation: Option<DVec3>,
     ) -> bool {
-        let small = LIP * self.shapes.filter_unit();
+        let small = SMALL * self.shapes.filter_distance;
         let overlap = |pair: [u32; 2], way: DVec3| self.overlap(pair, way);
-        let parts = |pair: [u32; 2], way: DVec3, length: f64| {
-            self.ends_within(pair, way, ..=ALIKE * length)
-        };
+        let parts = |pair: [u32; 2], way: DVec3, length: f64| self.parts(pair, way, length);
         islands.finish_first_pass(separation, small, overlap, parts)
     }
 
@@ -40,8 +37,7 @@ impl TriangleQuery<'_> {
     ) {
         contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
             let is_lifted = |(way, depth): &(DVec3, f64)| {
-                way.dot(contact.normal).abs() < SAME_SIDE
-                    && self.ends_within(*pair, *way, 0.0..=ALIKE * depth)
+                way.dot(contact.normal) < SAME_DIRECTION && self.parts(*pair, *way, *depth)
             };
             contact.distance <= 0.0 || !ways.iter().any(is_lifted)
         });
@@ -70,11 +66,11 @@ impl TriangleQuery<'_> {
         islands.overlaps().filter_map(move |pair| self.shapes.nearest_points(pair, within))
     }
 
-    /// Returns true if the overlap of two triangles along a direction is within a range, and both surfaces end where the overlap
-    /// does.
-    fn ends_within(&self, pair: [u32; 2], way: DVec3, range: impl RangeBounds<f64>) -> bool {
+    /// Returns true if a way parts two triangles at their height, and both surfaces end there.
+    fn parts(&self, pair: [u32; 2], way: DVec3, length: f64) -> bool {
+        let equal = f64::from(EQUAL_DEPTH) * self.shapes.filter_unit();
         let ends = |filter: &SurfaceFilter<'_>| filter.ends_along(way);
-        range.contains(&self.overlap(pair, way).length)
+        self.overlap(pair, way).length.abs() <= ALIKE * length + equal
             && self.shapes.with_filter(pair, ends) == Some(true)
     }
 
