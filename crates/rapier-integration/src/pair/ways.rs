@@ -1,6 +1,6 @@
 //! Ways out of overlaps, by group: the islands of two meshes, or the parts of a convex shape.
 //!
-//! One way may end all overlaps of a group. If resting bodies are as deep, only contacts along this way count. Otherwise a body that has sunk in
+//! All overlaps of a group may have the same way out. If resting bodies are as deep, only contacts along this way count. Otherwise a body that has sunk in
 //! by a millimetre would stop at the sides of a gap.
 
 use arrayvec::ArrayVec;
