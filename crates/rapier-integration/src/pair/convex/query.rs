@@ -264,13 +264,14 @@ impl PairQuery for ConvexQuery<'_> {
 impl ConvexQuery<'_> {
     /// Corrects ghosts, and removes contacts that lead past a border or that one way lifts over.
     fn correct(&self, contacts: &mut ContactList<PartContact>, scratch: &mut ConvexScratch) {
-        scratch.walls.begin(contacts.len());
+        scratch.walls.begin();
         self.correct_ghosts(contacts, scratch);
         self.find_lifted(contacts, scratch);
-        for upright in scratch.ghosts.upright.iter().filter(|upright| upright.is_past) {
-            scratch.walls.removed[upright.index as usize] = true;
+        let ConvexScratch { ghosts, walls, .. } = scratch;
+        for upright in ghosts.upright.iter().filter(|upright| upright.is_past) {
+            walls.mark(upright.index as usize, contacts.len());
         }
-        scratch.walls.remove_from(contacts);
+        walls.remove_from(contacts);
     }
 
     /// Returns the normal of a contact in the axes of the mesh. A single part needs no common axes and keeps its own.

@@ -5,7 +5,7 @@ use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{Side, SurfaceKind};
 
-use super::contact::{PartContact, SAME_WAY};
+use super::contact::{NormalSource, PartContact, SAME_WAY};
 use super::points::contact_points;
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{LazySurface, is_covered};
@@ -33,7 +33,7 @@ type Hit = ([u32; 2], PartContact);
 #[derive(Default)]
 pub(super) struct WallMemory {
     /// True for each contact that is removed.
-    pub(super) removed: Vec<bool>,
+    removed: Vec<bool>,
     /// Contacts apart, the nearest first.
     apart: Vec<usize>,
     /// Ways out of the triangles, by part.
@@ -42,15 +42,22 @@ pub(super) struct WallMemory {
 
 impl WallMemory {
     /// Begins with no contact marked.
-    pub(super) fn begin(&mut self, count: usize) {
+    pub(super) fn begin(&mut self) {
         self.removed.clear();
+    }
+
+    /// Marks one of `count` contacts.
+    pub(super) fn mark(&mut self, index: usize, count: usize) {
         self.removed.resize(count, false);
+        self.removed[index] = true;
     }
 
     /// Removes the marked contacts.
     pub(super) fn remove_from(&self, contacts: &mut ContactList<PartContact>) {
-        let mut removed = self.removed.iter();
-        contacts.retain(|_| removed.next() != Some(&true));
+        if !self.removed.is_empty() {
+            let mut removed = self.removed.iter();
+            contacts.retain(|_| removed.next() != Some(&true));
+        }
     }
 }
 
@@ -129,9 +136,8 @@ impl ConvexQuery<'_> {
         let distance = |i: usize| contacts[i].1.contact.distance;
         let mut apart = std::mem::take(&mut scratch.walls.apart);
         apart.clear();
-        let may_be_behind = |&i: &usize| {
-            self.depth(&contacts[i], scratch) <= 0.0 && contacts[i].1.feature != Feature::Face
-        };
+        let may_be_behind =
+            |&i: &usize| self.depth(&contacts[i]) <= 0.0 && contacts[i].1.feature != Feature::Face;
         apart.extend((0..contacts.len()).filter(may_be_behind));
         apart.sort_unstable_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         // All triangles at a vertex have the same contact there.
@@ -194,22 +200,30 @@ impl ConvexQuery<'_> {
         if !self.push_different_ways(contacts, SAME_DIRECTION, scratch) {
             return;
         }
-        let WallMemory { mut removed, mut ways, apart } = std::mem::take(&mut scratch.walls);
+        let mut ways = std::mem::take(&mut scratch.walls.ways);
         self.find_ways(surface, contacts, &mut ways, scratch);
-        for (is_removed, hit @ (of, PartContact { contact, .. })) in
-            removed.iter_mut().zip(contacts)
-        {
-            let [_, part] = self.pair.mesh_place.swap(*of);
-            let Some((way, length)) = ways.least(part as usize) else { continue };
-            let along = way.dot(contact.normal);
-            *is_removed |= if self.depth(hit, scratch) > 0.0 {
-                along < SAME_SIDE
-            } else {
-                along < SAME_DIRECTION && self.parts(surface, hit, (way, length), scratch)
-            };
+        let mut last = None;
+        let mut is_lifted = |hit: &Hit, scratch: &mut ConvexScratch| {
+            let [_, part] = self.pair.mesh_place.swap(hit.0);
+            let known = last.filter(|(of, _)| *of == part);
+            let (_, way) = *last.insert(known.unwrap_or_else(|| (part, ways.least(part as usize))));
+            let Some((way, length)) = way else { return false };
+            let along = way.dot(hit.1.contact.normal);
+            if self.depth(hit) > 0.0 {
+                return along < SAME_SIDE;
+            }
+            along < SAME_DIRECTION && self.parts(surface, hit, (way, length), scratch)
+        };
+        for (index, hit) in contacts.iter().enumerate() {
+            if is_lifted(hit, scratch) {
+                scratch.walls.mark(index, contacts.len());
+            }
         }
-        scratch.walls = WallMemory { ways, apart, ..Default::default() };
-        self.find_behind(contacts, NO_FARTHER, scratch, &mut removed);
+        scratch.walls.ways = ways;
+        let mut removed = std::mem::take(&mut scratch.walls.removed);
+        if !removed.is_empty() {
+            self.find_behind(contacts, NO_FARTHER, scratch, &mut removed);
+        }
         scratch.walls.removed = removed;
     }
 
@@ -224,14 +238,14 @@ impl ConvexQuery<'_> {
         let part_of = |of: [u32; 2]| self.pair.mesh_place.swap(of)[1] as usize;
         ways.clear();
         for hit @ (of, PartContact { contact, .. }) in contacts {
-            let depth = self.depth(hit, scratch);
+            let depth = self.depth(hit);
             if depth >= -self.equal_height() {
                 ways.add(part_of(*of), contact.normal, depth.max(0.0));
             }
         }
         let small = SMALL * self.filter_distance();
         for hit @ (of, PartContact { contact, .. }) in contacts {
-            if self.depth(hit, scratch) > 0.0 {
+            if self.depth(hit) > 0.0 {
                 let parts = |way, length| self.parts(surface, hit, (way, length), scratch);
                 ways.keep_parting(part_of(*of), contact.normal, small, parts);
             }
@@ -239,9 +253,10 @@ impl ConvexQuery<'_> {
     }
 
     /// Returns the depth of a contact; negative if it is apart.
-    fn depth(&self, (of, hit): &Hit, scratch: &mut ConvexScratch) -> f64 {
-        let radius = self.with_pair(*of, scratch, |pair| pair.radius()).unwrap_or_default();
-        radius - hit.contact.distance
+    fn depth(&self, (of, hit): &Hit) -> f64 {
+        let [_, part] = self.pair.mesh_place.swap(*of);
+        let radius = self.pair.parts.with(part, |part| part.shape.radius()).unwrap_or_default();
+        f64::from(radius) - hit.contact.distance
     }
 
     /// Returns the difference up to which two heights are equal.
@@ -267,16 +282,21 @@ impl ConvexQuery<'_> {
             let corners = &pair.placed.in_part(pair.corners);
             let height = |&i: &usize| corners[i].dot(way);
             let highest = (0..3).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0);
-            let mut lowest = f64::INFINITY;
+            let most = ALIKE * length + self.equal_height();
+            let overlap = |on_shape: DVec3| height(&highest) - on_shape.dot(way) + pair.radius();
+            // Spares the points: the lowest one is no higher.
+            if hit.source == NormalSource::Own && overlap(hit.contact.on_shape) > most {
+                return false;
+            }
+            let mut greatest = f64::NEG_INFINITY;
             contact_points(corners, pair.part.shape, hit, None, 0.0, |point| {
-                lowest = lowest.min(point.on_shape.dot(way));
+                greatest = greatest.max(overlap(point.on_shape));
             });
-            let overlap = height(&highest) - lowest + pair.radius();
             let [axis, _] = pair.placed.directions(way);
             let corner = Feature::Vertex(highest as u8);
             // A contact without points stops nothing.
-            lowest == f64::INFINITY
-                || overlap.abs() <= ALIKE * length + self.equal_height()
+            greatest == f64::NEG_INFINITY
+                || greatest.abs() <= most
                     && surface.around(triangle).is_local_minimum(triangle, corner, axis, None)
         });
         parts == Some(true)
