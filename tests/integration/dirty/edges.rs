@@ -157,7 +157,7 @@ fn step_down(height: Real) -> [Mesh; 2] {
     let middle = Vec2::new(1.0, 0.5);
     let outline =
         [[2.0, -height], [0.0, -height], [0.0, 0.0], [-2.0, 0.0], [-2.0, -1.0], [2.0, -1.0]];
-    let outline = outline.map(|[x, y]| [x.min(1.9), y]).map(|point| Vec2::from(point) + middle);
+    let outline = outline.map(|point| Vec2::from(point) + middle);
     let solid = mesh::prism(&outline, 1.0).mapped(|v| v - middle.extend(0.0));
     let mut sheet = solid.clone();
     sheet.triangles.retain(|corners| {

@@ -3,6 +3,7 @@
 
 mod budget;
 mod data;
+mod flags;
 mod identity;
 mod neighbours;
 mod pair_mesh;

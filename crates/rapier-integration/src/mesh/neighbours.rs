@@ -14,7 +14,7 @@ use sbbk_core::surface::{
     hangs, is_flat, minimum_cones, place, side, sides, winding_sign,
 };
 
-use super::data::TriangleFlags;
+use super::flags::TriangleFlags;
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]

@@ -457,9 +457,8 @@ impl<'a> SurfaceFilter<'a> {
     pub(super) fn ends_along(&self, way: DVec3) -> bool {
         (0..2).all(|i| {
             let axis = [way, -way][i];
-            let height = |k: &usize| self.local.corners[i][*k].dot(axis);
-            let outermost = (0..3).max_by(|a, b| height(a).total_cmp(&height(b)));
-            outermost.is_some_and(|k| self.ends(i, Feature::Vertex(k as u8), axis))
+            let heights = self.local.corners[i].map(|corner| corner.dot(axis));
+            self.surfaces[i].ends_along(self.pair[i], heights, self.in_frame(i, axis))
         })
     }
 

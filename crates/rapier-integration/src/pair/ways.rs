@@ -7,6 +7,8 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
 
+use super::reduce::EQUAL_DEPTH;
+
 /// Greatest depth of resting bodies, in filter distances: a fiftieth of the radius. Higher: bodies deep in others leave along one way. Lower:
 /// heavy bodies stop at gaps.
 pub(super) const SMALL: f64 = 0.2;
@@ -74,4 +76,14 @@ pub(super) fn add_direction(known: &mut Directions, normal: DVec3, depth: f64) {
         Some((_, greatest)) => *greatest = greatest.max(depth),
         None => _ = known.try_push((normal, depth)),
     }
+}
+
+/// Returns the difference up to which two heights are equal.
+pub(super) fn equal_height(filter_unit: f64) -> f64 {
+    f64::from(EQUAL_DEPTH) * filter_unit
+}
+
+/// Returns the greatest overlap that a way of a length parts.
+pub(super) fn greatest_overlap(length: f64, filter_unit: f64) -> f64 {
+    ALIKE * length + equal_height(filter_unit)
 }

@@ -161,6 +161,12 @@ impl<F: Facets> Around<F> {
         (borders.into_iter().any(ends), count)
     }
 
+    /// Returns true if the surface ends at the highest corner of a triangle along a unit axis. `heights` has the heights of the corners.
+    pub fn ends_along(&self, triangle: u32, heights: [f64; 3], axis: DVec3) -> bool {
+        let highest = (0..3).max_by(|&a, &b| heights[a].total_cmp(&heights[b])).unwrap_or_default();
+        self.is_local_minimum(triangle, Feature::Vertex(highest as u8), axis, None)
+    }
+
     /// True if the body is on one side of the triangle, and nothing on the other.
     pub fn is_solid(&self) -> bool {
         self.side.outward().is_some()

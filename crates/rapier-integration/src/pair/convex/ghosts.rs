@@ -215,19 +215,13 @@ impl GhostContacts {
         }
     }
 
-    /// Forgets the last contacts.
-    pub(super) fn clear(&mut self) {
+    /// Forgets the last contacts, and lists the new ones of each corner.
+    fn begin<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [u64; 3]) {
         self.kept_strays = 0;
         self.walls.clear();
         self.on_faces.clear();
         self.borders.clear();
-        self.upright.clear();
         self.sources.clear();
-    }
-
-    /// Forgets the last contacts, and lists the new ones of each corner.
-    fn begin<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [u64; 3]) {
-        self.clear();
         self.sources.extend(0..contacts.len() as u32);
         let Self { entries, corners, triangles, .. } = self;
         entries.clear();

@@ -62,12 +62,11 @@ impl ConvexQuery<'_> {
     ) {
         let is_at_border =
             |(_, contact): &([u32; 2], PartContact)| contact.feature != Feature::Face;
-        let mut ghosts = std::mem::take(&mut scratch.ghosts);
+        scratch.ghosts.upright.clear();
         if !self.pair.has_surface() || !contacts.iter().any(is_at_border) {
-            ghosts.clear();
-            scratch.ghosts = ghosts;
             return;
         }
+        let mut ghosts = std::mem::take(&mut scratch.ghosts);
         self.find_ghosts(&mut ghosts, contacts, scratch);
         for &(index, wall) in &ghosts.walls {
             contacts[index as usize].1.contact = wall;

@@ -18,13 +18,13 @@ use super::pair::ConvexPair;
 use super::parts::{Part, PartData, Parts, PlacedPart};
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use super::walls::WallMemory;
 use crate::mesh::{Change, LazySurface, PairMesh};
 use crate::pair::pose::{Moving, PairPose};
 use crate::pair::query::{
     Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery, QueryMemory,
 };
 use crate::pair::reduce::{ContactSummary, PatchPlan};
+use crate::pair::ways::Ways;
 
 impl<'a> Pair for ConvexPair<'a> {
     /// Data of the mesh and of the parts that the candidates belong to.
@@ -68,6 +68,33 @@ pub(crate) struct ConvexScratch {
     pub(super) walls: WallMemory,
     /// Parts with the distances of their contacts, and push-outs.
     pub(super) push_outs: (Vec<(u32, f64)>, ContactList<PartContact>),
+}
+
+/// Memory for the search for [walls](super::walls).
+#[derive(Default)]
+pub(super) struct WallMemory {
+    /// True for each contact that is removed. Empty if none is.
+    pub(super) removed: Vec<bool>,
+    /// Contacts apart, the nearest first.
+    pub(super) apart: Vec<usize>,
+    /// Ways out of the triangles, by part.
+    pub(super) ways: Ways,
+}
+
+impl WallMemory {
+    /// Marks one of `count` contacts.
+    pub(super) fn mark(&mut self, index: usize, count: usize) {
+        self.removed.resize(count, false);
+        self.removed[index] = true;
+    }
+
+    /// Removes the marked contacts.
+    pub(super) fn remove_from(&self, contacts: &mut ContactList<PartContact>) {
+        if !self.removed.is_empty() {
+            let mut removed = self.removed.iter();
+            contacts.retain(|_| removed.next() != Some(&true));
+        }
+    }
 }
 
 thread_local! {
@@ -264,7 +291,7 @@ impl PairQuery for ConvexQuery<'_> {
 impl ConvexQuery<'_> {
     /// Corrects ghosts, and removes contacts that lead past a border or that one way lifts over.
     fn correct(&self, contacts: &mut ContactList<PartContact>, scratch: &mut ConvexScratch) {
-        scratch.walls.begin();
+        scratch.walls.removed.clear();
         self.correct_ghosts(contacts, scratch);
         self.find_lifted(contacts, scratch);
         let ConvexScratch { ghosts, walls, .. } = scratch;

@@ -10,56 +10,19 @@ use super::points::contact_points;
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{LazySurface, is_covered};
 use crate::pair::query::ContactList;
-use crate::pair::reduce::EQUAL_DEPTH;
 use crate::pair::shapes::{filter_distance, filter_unit};
-use crate::pair::ways::{ALIKE, SAME_DIRECTION, SAME_SIDE, SMALL, Ways};
+use crate::pair::ways::{SAME_DIRECTION, SAME_SIDE, SMALL, Ways, equal_height, greatest_overlap};
 
 /// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher: bodies catch on walls behind
 /// the edge that they slide over. Lower: rounding decides about contacts along the surface.
 const TANGENTIAL: f64 = 1.0e-4;
 
-/// Share of a distance below which another distance is less. Higher: rounding picks one of two equal contacts. Lower: bodies catch on the
-/// foot of a low step behind the edge that they slide over.
-const NEARER: f64 = 1.0 - 1.0e-6;
-
-/// Ratio of two distances up to which the first one is not greater. Higher: contacts apart are lost. Lower: rounding keeps contacts at the
-/// foot of a chamfer that the body slides over.
-const NO_FARTHER: f64 = 1.0 + 1.0e-6;
+/// Share of a distance by which an equal one may differ. Higher: contacts apart are lost. Lower: bodies catch on the foot of a step or chamfer
+/// that they slide over.
+const EQUAL: f64 = 1.0e-6;
 
 /// A contact and its subshapes.
 type Hit = ([u32; 2], PartContact);
-
-/// Memory for the search for walls.
-#[derive(Default)]
-pub(super) struct WallMemory {
-    /// True for each contact that is removed.
-    removed: Vec<bool>,
-    /// Contacts apart, the nearest first.
-    apart: Vec<usize>,
-    /// Ways out of the triangles, by part.
-    ways: Ways,
-}
-
-impl WallMemory {
-    /// Begins with no contact marked.
-    pub(super) fn begin(&mut self) {
-        self.removed.clear();
-    }
-
-    /// Marks one of `count` contacts.
-    pub(super) fn mark(&mut self, index: usize, count: usize) {
-        self.removed.resize(count, false);
-        self.removed[index] = true;
-    }
-
-    /// Removes the marked contacts.
-    pub(super) fn remove_from(&self, contacts: &mut ContactList<PartContact>) {
-        if !self.removed.is_empty() {
-            let mut removed = self.removed.iter();
-            contacts.retain(|_| removed.next() != Some(&true));
-        }
-    }
-}
 
 impl ConvexQuery<'_> {
     /// Removes the contacts of triangles that have the body on both sides, those that lead into the body, and those behind these. Asks
@@ -81,12 +44,15 @@ impl ConvexQuery<'_> {
         let mut removed = std::mem::take(&mut scratch.walls.removed);
         self.find_walls(surface, contacts, scratch, &mut removed);
         if removed.contains(&true) {
-            self.find_behind(contacts, NEARER, scratch, &mut removed);
+            self.find_behind(contacts, 1.0 - EQUAL, scratch, &mut removed);
+        } else {
+            removed.clear();
         }
         scratch.walls.removed = removed;
         scratch.walls.remove_from(contacts);
     }
 
+    /// Returns true if a normal is farther from the first one than an angle.
     fn push_different_ways(
         &self,
         contacts: &[Hit],
@@ -125,7 +91,8 @@ impl ConvexQuery<'_> {
         }));
     }
 
-    /// Finds contacts apart at whose points the triangle of a removed contact is nearer. The way to them leads through that triangle.
+    /// Finds contacts apart at whose points the triangle of a removed contact is nearer than `near` times as far. The way to them leads
+    /// through that triangle.
     fn find_behind(
         &self,
         contacts: &[Hit],
@@ -144,16 +111,17 @@ impl ConvexQuery<'_> {
         let mut last = None;
         for &i in &apart {
             let (of, PartContact { contact, .. }) = &contacts[i];
+            let [_, part] = self.pair.mesh_place.swap(*of);
             let place = self.with_pair(*of, scratch, |pair| pair.touched_place(contact)).flatten();
             let Some((place, seam)) = place.filter(|_| !removed[i]) else { continue };
-            let known = last.filter(|(at, _)| *at == place);
+            let known = last.filter(|(at, _)| *at == (part, place));
             let (_, is_behind) = *last.insert(known.unwrap_or_else(|| {
                 let mut is_behind = false;
                 self.strays_at(contacts, *of, place, seam, |other| {
                     let other = other as usize;
                     is_behind |= removed[other] && distance(other) < near * contact.distance;
                 });
-                (place, is_behind)
+                ((part, place), is_behind)
             }));
             removed[i] = is_behind;
         }
@@ -222,7 +190,7 @@ impl ConvexQuery<'_> {
         scratch.walls.ways = ways;
         let mut removed = std::mem::take(&mut scratch.walls.removed);
         if !removed.is_empty() {
-            self.find_behind(contacts, NO_FARTHER, scratch, &mut removed);
+            self.find_behind(contacts, 1.0 + EQUAL, scratch, &mut removed);
         }
         scratch.walls.removed = removed;
     }
@@ -239,7 +207,7 @@ impl ConvexQuery<'_> {
         ways.clear();
         for hit @ (of, PartContact { contact, .. }) in contacts {
             let depth = self.depth(hit);
-            if depth >= -self.equal_height() {
+            if depth >= -equal_height(self.filter_unit()) {
                 ways.add(part_of(*of), contact.normal, depth.max(0.0));
             }
         }
@@ -259,14 +227,14 @@ impl ConvexQuery<'_> {
         f64::from(radius) - hit.contact.distance
     }
 
-    /// Returns the difference up to which two heights are equal.
-    fn equal_height(&self) -> f64 {
-        f64::from(EQUAL_DEPTH) * filter_unit(self.pair.pose, self.filter_distance())
-    }
-
     /// Returns the filter distance of the smaller shape.
     fn filter_distance(&self) -> f64 {
         filter_distance(true, self.pair.mesh.ball().radius.min(self.part_data.ball.radius))
+    }
+
+    /// Returns the unit of the filter.
+    fn filter_unit(&self) -> f64 {
+        filter_unit(self.pair.pose, self.filter_distance())
     }
 
     /// Returns true if a triangle, and the surface, end near the lowest point of a contact along a way. The way then parts both.
@@ -280,10 +248,10 @@ impl ConvexQuery<'_> {
         let [triangle, _] = self.pair.mesh_place.swap(*of);
         let parts = self.with_pair(*of, scratch, |pair| {
             let corners = &pair.placed.in_part(pair.corners);
-            let height = |&i: &usize| corners[i].dot(way);
-            let highest = (0..3).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0);
-            let most = ALIKE * length + self.equal_height();
-            let overlap = |on_shape: DVec3| height(&highest) - on_shape.dot(way) + pair.radius();
+            let heights = corners.map(|corner| corner.dot(way));
+            let highest = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let overlap = |on_shape: DVec3| highest - on_shape.dot(way) + pair.radius();
+            let most = greatest_overlap(length, self.filter_unit());
             // Spares the points: the lowest one is no higher.
             if hit.source == NormalSource::Own && overlap(hit.contact.on_shape) > most {
                 return false;
@@ -293,11 +261,10 @@ impl ConvexQuery<'_> {
                 greatest = greatest.max(overlap(point.on_shape));
             });
             let [axis, _] = pair.placed.directions(way);
-            let corner = Feature::Vertex(highest as u8);
             // A contact without points stops nothing.
             greatest == f64::NEG_INFINITY
                 || greatest.abs() <= most
-                    && surface.around(triangle).is_local_minimum(triangle, corner, axis, None)
+                    && surface.around(triangle).ends_along(triangle, heights, axis)
         });
         parts == Some(true)
     }

@@ -7,10 +7,9 @@ use super::TriangleQuery;
 use crate::pair::deep::{self, ContourMemory};
 use crate::pair::islands::{Overlap, OverlapIslands};
 use crate::pair::query::ContactList;
-use crate::pair::reduce::EQUAL_DEPTH;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
-use crate::pair::ways::{ALIKE, SAME_DIRECTION, SMALL};
+use crate::pair::ways::{SAME_DIRECTION, SMALL, greatest_overlap};
 
 /// Least cosine between a face and a direction that leads out of it rather than along it. Higher: deep boxes get contacts with the
 /// sides; lower: bodies in sockets lose contacts.
@@ -68,9 +67,9 @@ impl TriangleQuery<'_> {
 
     /// Returns true if a way parts two triangles at their height, and both surfaces end there.
     fn parts(&self, pair: [u32; 2], way: DVec3, length: f64) -> bool {
-        let equal = f64::from(EQUAL_DEPTH) * self.shapes.filter_unit();
+        let most = greatest_overlap(length, self.shapes.filter_unit());
         let ends = |filter: &SurfaceFilter<'_>| filter.ends_along(way);
-        self.overlap(pair, way).length.abs() <= ALIKE * length + equal
+        self.overlap(pair, way).length.abs() <= most
             && self.shapes.with_filter(pair, ends) == Some(true)
     }
 

@@ -1,0 +1,62 @@
+//! Flags store the results of searches around a triangle in 32 bits. Threads share them.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use sbbk_core::contact::Feature;
+use sbbk_core::surface::{MinimumCones, Side};
+
+/// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], and its [`MinimumCones`].
+#[derive(Debug, Default)]
+pub(crate) struct TriangleFlags(AtomicU32);
+
+/// [`Side`] by the number in the flags.
+const SIDES: [Side; 4] = [Side::Outer, Side::Turned, Side::Inner, Side::Sheet];
+
+impl TriangleFlags {
+    const HAS_SIDE: u32 = 1 << 7;
+
+    fn bits(feature: Feature) -> [u32; 2] {
+        let place = match feature {
+            Feature::Edge(i) => i,
+            Feature::Vertex(i) => 3 + i,
+            Feature::Face => return [0; 2],
+        };
+        [1 << place, 1 << (8 + place)]
+    }
+
+    /// Returns true if an edge or a vertex has no strays; `None` before a search.
+    pub(super) fn is_whole(&self, feature: Feature) -> Option<bool> {
+        let [is_searched, has_strays] = Self::bits(feature);
+        let flags = self.0.load(Ordering::Relaxed);
+        (flags & is_searched != 0).then_some(flags & has_strays == 0)
+    }
+
+    pub(super) fn side(&self) -> Option<Side> {
+        let flags = self.0.load(Ordering::Relaxed);
+        (flags & Self::HAS_SIDE != 0).then(|| SIDES[flags as usize >> 14 & 3])
+    }
+
+    pub(super) fn set_side(&self, side: Side) {
+        self.0.fetch_or(Self::HAS_SIDE | (side as u32) << 14, Ordering::Relaxed);
+    }
+
+    #[inline]
+    pub(super) fn cones(&self) -> Option<MinimumCones> {
+        MinimumCones::of_bits((self.0.load(Ordering::Relaxed) >> 16) as u16)
+    }
+
+    pub(super) fn set_cones(&self, cones: MinimumCones) {
+        self.0.fetch_or(u32::from(cones.bits()) << 16, Ordering::Relaxed);
+    }
+
+    pub(super) fn set(&self, feature: Feature, found: bool) {
+        let [is_searched, has_strays] = Self::bits(feature);
+        self.0.fetch_or(is_searched | if found { has_strays } else { 0 }, Ordering::Relaxed);
+    }
+}
+
+impl Clone for TriangleFlags {
+    fn clone(&self) -> Self {
+        Self(AtomicU32::new(self.0.load(Ordering::Relaxed)))
+    }
+}
