@@ -2,6 +2,7 @@
 
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
+use parry3d::shape::HalfSpace;
 
 use super::parts::Parts;
 use super::shape::ConvexShape;
@@ -32,5 +33,16 @@ impl ConvexPair<'_> {
 
     pub(super) fn is_ball(&self) -> bool {
         matches!(self.parts, Parts::One(ConvexShape::Ball(_)))
+    }
+
+    /// Returns true if contacts make patches: unless the mesh is soft or the shape is a ball, which has few contacts of one point.
+    pub(super) fn has_patches(&self) -> bool {
+        self.config.has_patches() && self.mesh.is_rigid() && !self.is_ball()
+    }
+
+    /// Returns the half-space if contacts with it are [vertices](super::half_space).
+    pub(super) fn vertices_of(&self) -> Option<&HalfSpace> {
+        let Parts::One(ConvexShape::HalfSpace(half_space)) = self.parts else { return None };
+        self.has_patches().then_some(half_space)
     }
 }

@@ -68,6 +68,8 @@ pub(crate) struct ConvexScratch {
     pub(super) walls: WallMemory,
     /// Parts with the distances of their contacts, and push-outs.
     pub(super) push_outs: (Vec<(u32, f64)>, ContactList<PartContact>),
+    /// True for each vertex of the mesh that has a contact with a [half-space](super::half_space). All false between queries.
+    pub(super) is_vertex_known: Vec<bool>,
 }
 
 /// Memory for the search for [walls](super::walls).
@@ -243,6 +245,10 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
         contacts: &mut ContactList<PartContact>,
     ) {
+        if let Some(half_space) = self.pair.vertices_of() {
+            self.add_vertices(half_space, candidates, limits, scratch, contacts);
+            return;
+        }
         for candidate in candidates {
             if limits.may_touch(candidate)
                 && let Some(contact) = self.contact(candidate, limits, scratch)
@@ -257,8 +263,7 @@ impl PairQuery for ConvexQuery<'_> {
 
     /// Makes patches unless the mesh is soft or the shape is a ball, which has few contacts of one point.
     fn reduction(&self, _: &ContactList<PartContact>) -> Option<PatchPlan> {
-        let is_reduced = self.pair.mesh.is_rigid() && !self.pair.is_ball();
-        (is_reduced && self.pair.config.has_patches()).then(|| {
+        self.pair.has_patches().then(|| {
             let radius = self.part_data.patch_radius(&self.pair.parts);
             PatchPlan::of_convex(
                 self.pair.pose.prediction,

@@ -4,7 +4,6 @@ use glamx::{DVec3, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::TrackedContact;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
-use parry3d::shape::{HalfSpace, PackedFeatureId};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::longest_side;
@@ -86,7 +85,7 @@ impl TrianglePartPair<'_> {
                 }
             }
             ConvexShape::HalfSpace(half_space) => {
-                self.write_half_space(half_space, &contact.contact, out);
+                self.write_half_space(half_space, contact, out);
             }
             _ => self.write_features(contact, out),
         }
@@ -113,32 +112,6 @@ impl TrianglePartPair<'_> {
         let distance = (distance - f64::from(radius)) as Real;
         out.points.push(TrackedContact::new(point1, point2, *FACE, *FACE, distance));
         out.normals = normals;
-    }
-
-    /// Writes the corners of the triangle that are within the prediction distance of a half-space.
-    fn write_half_space(
-        &self,
-        half_space: &HalfSpace,
-        contact: &ConvexContact,
-        out: &mut ContactPoints,
-    ) {
-        let ConvexPair { mesh_place, pose, .. } = self.pair;
-        let normal = half_space.normal.as_dvec3();
-        let corners = self.placed.in_part(self.corners);
-        for (index, (corner, vertex)) in (0..).zip(corners.iter().zip(self.corners)) {
-            let distance = corner.dot(normal);
-            if distance <= f64::from(pose.prediction) {
-                out.points.push(TrackedContact::flipped(
-                    (corner - normal * distance).as_vec3(),
-                    vertex,
-                    PackedFeatureId::face(0),
-                    PackedFeatureId::vertex(index),
-                    distance as Real,
-                    !mesh_place.is_second(),
-                ));
-            }
-        }
-        out.normals = self.normals(contact);
     }
 
     /// Writes the points of a shape with features; none if normal cones reject the contact.
@@ -192,13 +165,15 @@ impl TrianglePartPair<'_> {
         }
         let part = if self.part.pose.is_some() { self.placed.index } else { 0 };
         let side = longest_side(&self.corners.map(|corner| corner.as_dvec3()));
-        let reach = (side as Real).min(2.0 * self.placed.extent.ball().radius);
+        let is_point = self.pair.vertices_of().is_some();
+        let reach =
+            if is_point { 0.0 } else { (side as Real).min(2.0 * self.placed.extent.ball().radius) };
         Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance, reach })
     }
 
     /// Returns unit vectors from each shape to the other, in its frame, in the order of the pair.
     #[inline(always)]
-    fn normals(&self, contact: &ConvexContact) -> [Vec3; 2] {
+    pub(super) fn normals(&self, contact: &ConvexContact) -> [Vec3; 2] {
         let [in_mesh, in_part] = self.placed.directions(contact.normal);
         self.pair.mesh_place.swap([in_mesh, -in_part]).map(|normal| normal.as_vec3())
     }
