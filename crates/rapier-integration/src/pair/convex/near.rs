@@ -32,14 +32,14 @@ pub(super) fn triangles_near(
         }
         ConvexShape::Ball(_) if !placed.placement.is_finite() => {}
         ConvexShape::Ball(ball) => {
-            let centre = placed.inverse.translation.as_vec3();
+            let centre = placed.origin_in_mesh.as_vec3();
             visit(mesh, near_ball(centre, ball.radius + margin, magnitude), counters, found);
         }
         _ => {
             let (min, max, radius) = placed.extent.bounds();
             let size = min.abs().max(max.abs()).max_element();
             let reach = ((f64::from(margin) + f64::from(radius)) as Real).next_up();
-            let test = BoxTest::new([magnitude, size], &placed.inverse, reach);
+            let test = BoxTest::new([magnitude, size], &placed.inverse(), reach);
             let near = test.of(TestedBox::new(min, max));
             visit(mesh, |node| near.meets(node), counters, found);
         }

@@ -155,7 +155,7 @@ impl TrianglePartPair<'_> {
     ) -> Option<ContactSummary> {
         let Normals { normals, has_cones, .. } = self.constrained_normals(&contact.contact)?;
         let [of_mesh, of_part] = self.pair.mesh_place.swap(normals);
-        let normal = if self.placed.centre_in_mesh.is_some() { -of_mesh } else { of_part };
+        let normal = if self.placed.has_mesh_axes { -of_mesh } else { of_part };
         let ConvexContact { on_triangle, distance, .. } = contact.contact;
         let mut distance = (distance - f64::from(self.part.shape.radius())) as Real;
         if contact.source == NormalSource::Neighbour || has_cones {
@@ -164,11 +164,14 @@ impl TrianglePartPair<'_> {
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
         }
         let part = if self.part.pose.is_some() { self.placed.index } else { 0 };
-        let side = longest_side(&self.corners.map(|corner| corner.as_dvec3()));
-        let is_point = self.pair.vertices_of().is_some();
-        let reach =
-            if is_point { 0.0 } else { (side as Real).min(2.0 * self.placed.extent.ball().radius) };
+        let reach = if self.pair.vertices_of().is_some() { 0.0 } else { self.reach() };
         Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance, reach })
+    }
+
+    /// Returns a distance from a point of the contact that no other point exceeds.
+    fn reach(&self) -> Real {
+        let side = longest_side(&self.corners.map(|corner| corner.as_dvec3()));
+        (side as Real).min(2.0 * self.placed.extent.ball().radius)
     }
 
     /// Returns unit vectors from each shape to the other, in its frame, in the order of the pair.

@@ -184,7 +184,8 @@ impl Worlds<'_> {
                 let small = Ground::new(64, 0.5, PLAIN);
                 self.measure(&scenes::bouncing(&large, 5 * plan.steps));
                 self.measure(&scenes::crossing(&world, 2 * plan.steps));
-                self.measure(&[scenes::rolling_population(&small, plan.small_meshes)]);
+                let small_meshes = scenes::rolling_population(&small, plan.small_meshes);
+                self.measure(&[small_meshes, scenes::on_half_space(plan.bodies, plan.steps)]);
             }
             Group::Flags => {
                 let all = Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::all());

@@ -111,6 +111,23 @@ pub(super) fn bodies(ground: &Ground, count: usize, steps: usize) -> Vec<Everyda
     kinds(1.0).into_iter().map(scene).collect()
 }
 
+/// Boxes of 12 triangles that slide down a half-space.
+pub(super) fn on_half_space(count: usize, steps: usize) -> Everyday<'static> {
+    named(SINGLE, format!("{count} mesh boxes on a half-space"), 12, steps, move || {
+        let mut world = PhysicsWorld::new();
+        let slope = SharedShape::halfspace(Vec3::new(0.1, 1.0, 0.0).normalize());
+        world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(slope).friction(0.0));
+        let cuboid = mesh::cuboid(Vec3::new(0.5, 0.4, 0.6), 1);
+        let side = (count as f64).sqrt().ceil() as usize;
+        for index in 0..count {
+            let [x, z] = [index % side, index / side].map(|place| 2.0 * place as f32);
+            let body = RigidBodyBuilder::dynamic().translation(Vec3::new(x, 0.41 - 0.1 * x, z));
+            world.insert(body, collider(&cuboid).friction(0.0));
+        }
+        Driven::alone(world)
+    })
+}
+
 /// A ball and two meshes of about the same size.
 fn wanderers() -> [(&'static str, SharedShape); 3] {
     let mesh_ball = mesh::ball(0.5, 8).shape();
