@@ -1,5 +1,6 @@
 //! Results: rows, tables and files.
 
+mod bars;
 mod output;
 mod row;
 mod tables;
@@ -38,8 +39,9 @@ impl Results {
 impl fmt::Display for Results {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "VERDICT: {}\n\n{}", self.verdict, self.environment)?;
-        let tables = tables(self.study, &self.csv());
-        tables.iter().try_for_each(|table| write!(f, "\n{table}"))?;
+        let csv = self.csv();
+        tables(self.study, &csv).iter().try_for_each(|table| write!(f, "\n{table}"))?;
+        write!(f, "\n{}", tables::picture(self.study, &csv))?;
         let mut notes = self.notes.iter();
         notes.try_for_each(|note| write!(f, "\n{note}"))
     }

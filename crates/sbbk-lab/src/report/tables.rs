@@ -1,6 +1,6 @@
 //! The tables of the documentation, filled with the numbers of a study.
 //!
-//! `docs/data/tables.txt` describes tables and verdicts. A placeholder is `{FUNCTION BACKEND: SCENE / PATH}`:
+//! `docs/data/tables.txt` describes tables, bars and verdicts. A placeholder is `{FUNCTION BACKEND: SCENE / PATH}`:
 //!
 //! * FUNCTION, which may be left out, joins the numbers of all rows. `sum` and `max` speak for
 //!   themselves. `ms` is the largest of numbers in microseconds. `wrong` counts wrong contacts.
@@ -13,6 +13,7 @@
 use std::collections::HashMap;
 use std::fmt;
 
+use super::bars::bars;
 use super::row::WRONG;
 use crate::metrics::geometric_mean;
 
@@ -42,12 +43,26 @@ pub fn tables(study: &str, csv: &str) -> Vec<Table> {
 
 /// Returns the main finding of a study from its CSV; nothing if it has no description.
 pub(super) fn verdict(study: &str, csv: &str) -> String {
-    let specs = SPECS.split("\n\n").filter_map(|spec| spec.strip_prefix("verdict "));
-    let mut specs = specs.filter_map(|spec| spec.split_once('\n'));
-    let found = specs.find(|(name, _)| *name == study);
-    found.map_or_else(String::new, |(_, text)| {
-        Data::parse(csv).fill(&text.replace('\n', " "), "sbbk")
-    })
+    let text = spec_of("verdict ", study).unwrap_or_default();
+    Data::parse(csv).fill(&text.replace('\n', " "), "sbbk")
+}
+
+/// Returns the bars of a study from its CSV; nothing if it has no description.
+pub(super) fn picture(study: &str, csv: &str) -> String {
+    let (text, data) = (spec_of("bars ", study).unwrap_or_default(), Data::parse(csv));
+    let ratio = |line: &'static str| {
+        let (label, ratio) = line.split_once(" | ")?;
+        Some((label, data.fill(ratio, "sbbk").parse().ok()?))
+    };
+    bars(&text.lines().filter_map(ratio).collect::<Vec<_>>())
+}
+
+/// Returns the description of a kind for a study.
+fn spec_of(kind: &str, study: &str) -> Option<&'static str> {
+    let mut specs = SPECS.split("\n\n").filter_map(|spec| spec.strip_prefix(kind));
+    specs
+        .find_map(|spec| spec.split_once('\n').filter(|(name, _)| *name == study))
+        .map(|(_, text)| text)
 }
 
 impl Table {
