@@ -249,12 +249,6 @@ impl OverlapIslands {
         self.touching.extend(next.touching);
     }
 
-    /// Returns the triangles of shape `i` with final contacts, and the normals of these.
-    pub(super) fn final_normals(&self, i: usize) -> impl Iterator<Item = (u32, DVec3)> {
-        let fine = self.crossings.iter().filter(|crossing| crossing.is_fine());
-        fine.map(move |crossing| (crossing.pair[i], crossing.normal))
-    }
-
     /// Returns the pairs that cross, or touch if none do.
     pub(super) fn overlaps(&self) -> impl Iterator<Item = [u32; 2]> {
         let crossing = self.crossings.iter().map(|crossing| crossing.pair);
