@@ -108,16 +108,8 @@ impl Support {
     }
 }
 
-/// A triangle and its group: 0 for mesh 1, 1 for mesh 2. The triangles of [unserved](IslandPlace::is_unserved) pairs are of the
-/// groups 2 and 3.
+/// A triangle, and its mesh: 0 or 1.
 type Node = (usize, u32);
-
-/// Overlap of two triangles along a direction.
-pub(super) struct Overlap {
-    pub(super) length: f64,
-    /// True if the direction leads out of a face of one of the triangles, rather than along it.
-    pub(super) leads_out: bool,
-}
 
 /// A crossing of an island that has too few contacts.
 pub(super) struct Unsupported {
@@ -163,8 +155,6 @@ pub(super) struct Crossing {
 pub(super) struct IslandPlace {
     /// True if the contact of the first pass pushes the wrong way.
     is_rejected: bool,
-    /// True if no reliable contact of the island would separate the pair. Such pairs form islands of their own.
-    is_unserved: bool,
     /// Index of the first crossing of the island.
     island: usize,
 }
@@ -191,12 +181,6 @@ impl Crossing {
     /// Returns true if the contact of the pair is reliable and pushes the right way.
     fn is_fine(&self) -> bool {
         self.is_reliable && !self.place.is_rejected
-    }
-
-    /// Returns the triangles by which islands are joined.
-    fn nodes(&self) -> [Node; 2] {
-        let first = 2 * usize::from(self.place.is_unserved);
-        [(first, self.pair[0]), (first + 1, self.pair[1])]
     }
 
     /// Returns the side of a sheet to which the contact pushes: 1 front, -1 back, 0 neither.
@@ -273,13 +257,11 @@ impl OverlapIslands {
 
     /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
     /// the wrong way. `separation`: direction in which mesh 2 separates, if known. `small`: depth of bodies at rest.
-    /// `overlap` returns the overlap of two triangles along a direction. `parts` tells if a way of a length parts two
-    /// triangles, and both surfaces end there.
+    /// `parts` tells if a way of a length parts two triangles, and both surfaces end there.
     pub(super) fn finish_first_pass(
         &mut self,
         separation: Option<DVec3>,
         small: f64,
-        overlap: impl Fn([u32; 2], DVec3) -> Overlap,
         parts: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
         self.reject_far_sides();
@@ -303,9 +285,6 @@ impl OverlapIslands {
         if are_good(&self.crossings) {
             return false;
         }
-        if self.find_unserved(overlap) {
-            self.join();
-        }
         self.sum_support();
         let has_sheet = self.crossings.iter().any(|crossing| crossing.sheet.is_some());
         if has_sheet && self.reject_sides_of_sheets() {
@@ -322,43 +301,15 @@ impl OverlapIslands {
         islands.reset(crossings.len() + touching.len());
         with_triangle.clear();
         // Triangles on opposite sides of crossing edges only touch.
-        let touching = touching.iter().map(|&[one, two]| [(0, one), (1, two)]);
-        let nodes = crossings.iter().map(Crossing::nodes).chain(touching);
-        for (index, node) in nodes.enumerate().flat_map(|(i, nodes)| nodes.map(|node| (i, node))) {
-            islands.join(*with_triangle.entry(node).or_insert(index), index);
+        let pairs = crossings.iter().map(|crossing| &crossing.pair).chain(&*touching);
+        for (index, &[one, two]) in pairs.enumerate() {
+            for node in [(0, one), (1, two)] {
+                islands.join(*with_triangle.entry(node).or_insert(index), index);
+            }
         }
         for (index, crossing) in crossings.iter_mut().enumerate() {
             crossing.place.island = islands.first(index);
         }
-    }
-
-    /// Finds the pairs that no reliable contact of their island separates, and returns true if there are any. A contact with a
-    /// floor does not part a body from a wall, though one triangle of the body may cross both.
-    fn find_unserved(&mut self, overlap: impl Fn([u32; 2], DVec3) -> Overlap) -> bool {
-        let Self { crossings, ways, .. } = self;
-        ways.clear();
-        for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
-            let known = ways.of(crossing.place.island);
-            if known.iter().all(|(way, _)| way.dot(crossing.normal) < SAME_DIRECTION) {
-                // Pairs that need a way beyond the limit get a closer look.
-                let _ = known.try_push((crossing.normal, crossing.greatest));
-            }
-        }
-        for Crossing { pair, place, .. } in &*crossings {
-            for (way, length) in ways.of(place.island) {
-                let overlap = overlap(*pair, *way);
-                *length = length.max(if overlap.leads_out { overlap.length } else { 0.0 });
-            }
-        }
-        let mut found = false;
-        for crossing in crossings.iter_mut().filter(|crossing| !crossing.is_fine()) {
-            let is_longer =
-                |(way, length): &(DVec3, f64)| overlap(crossing.pair, *way).length > *length;
-            let known = ways.of(crossing.place.island);
-            crossing.place.is_unserved = !known.is_empty() && known.iter().all(is_longer);
-            found |= crossing.place.is_unserved;
-        }
-        found
     }
 
     /// Returns the crossing of a pair.

@@ -28,10 +28,6 @@ fn is_open(islands: &OverlapIslands, pair: [u32; 2]) -> bool {
     islands.open_support(islands.crossing(pair).unwrap()).is_some()
 }
 
-fn no_overlap(_: [u32; 2], _: DVec3) -> Overlap {
-    Overlap { length: 0.0, leads_out: false }
-}
-
 /// Would catch islands that are not joined through common triangles, and pairs that a second
 /// pass changes without need.
 #[test]
@@ -46,7 +42,7 @@ fn islands_without_a_reliable_contact_need_support() {
         {
             islands.crossings.push(crossing(pair, contact, None));
         }
-        assert!(islands.finish_first_pass(None, 0.0, no_overlap, |_, _, _| false));
+        assert!(islands.finish_first_pass(None, 0.0, |_, _, _| false));
         let pairs = [[1, 1], [1, 2], [3, 2], [7, 7], [7, 8]];
         let open = pairs.map(|pair| is_open(&islands, pair));
         assert_eq!(open, [false, false, false, true, true]);
@@ -56,14 +52,11 @@ fn islands_without_a_reliable_contact_need_support() {
     }
     islands.clear();
     islands.crossings.push(crossing([1, 1], Some(&good), None));
-    assert!(!islands.finish_first_pass(None, 0.0, no_overlap, |_, _, _| false), "all is good");
+    assert!(!islands.finish_first_pass(None, 0.0, |_, _, _| false), "all is good");
     islands.clear();
     islands.crossings.push(crossing([1, 1], None, None));
     islands.crossings.push(crossing([1, 2], Some(&good), None));
-    assert!(
-        !islands.finish_first_pass(None, 0.0, no_overlap, |_, _, _| false),
-        "the island is held"
-    );
+    assert!(!islands.finish_first_pass(None, 0.0, |_, _, _| false), "the island is held");
 }
 
 /// Would catch a thin body that is pushed both ways, whichever of the two meshes it is.
@@ -73,7 +66,7 @@ fn of_two_sides_of_a_thin_body_the_nearer_one_counts() {
         let mut islands = OverlapIslands::default();
         islands.crossings.push(crossing(pair(5, 1), Some(&(DVec3::Y, 0.1)), None));
         islands.crossings.push(crossing(pair(5, 2), Some(&(-DVec3::Y, 0.3)), None));
-        assert!(islands.finish_first_pass(None, 0.0, no_overlap, |_, _, _| false));
+        assert!(islands.finish_first_pass(None, 0.0, |_, _, _| false));
         assert!(islands.is_final(pair(5, 1)) && !islands.is_final(pair(5, 2)));
     }
 }
@@ -88,7 +81,7 @@ fn one_contact_does_not_support_a_large_island() {
         for i in 0..pairs {
             islands.crossings.push(crossing([1, i], Some(&good).filter(|_| i < contacts), None));
         }
-        let needs_more = islands.finish_first_pass(None, 0.0, no_overlap, |_, _, _| false);
+        let needs_more = islands.finish_first_pass(None, 0.0, |_, _, _| false);
         assert_eq!(needs_more, islands.support.first().is_some_and(|support| !support.is_enough()));
         assert!(!needs_more || islands.is_final([1, 0]));
         assert!(support(&islands, [1, 0]).agrees(DVec3::new(1.0, 0.1, 0.0)));
@@ -116,8 +109,7 @@ fn of_contacts_both_ways_those_along_the_way_stay() {
     let mut both = islands(&[DVec3::Y, -DVec3::Y, aslant]);
     assert!(both.is_undecided() && both.separation.is_none());
     assert!(
-        both.finish_first_pass(Some(DVec3::Y), 0.0, no_overlap, |_, _, _| false)
-            && both.separation.is_some()
+        both.finish_first_pass(Some(DVec3::Y), 0.0, |_, _, _| false) && both.separation.is_some()
     );
     assert_eq!([1, 2, 3].map(|i| both.is_final([i, i])), [true, false, true]);
     assert!(is_open(&both, [2, 2]) && !support(&both, [2, 2]).agrees(-DVec3::Y));
@@ -136,7 +128,7 @@ fn of_two_sides_that_push_against_each_other_the_nearer_one_stays() {
         islands.crossings.push(crossing([1, 1], Some(&(DVec3::Y, up)), None));
         islands.crossings.push(crossing([1, 2], Some(&(leaning, down)), None));
         islands
-            .finish_first_pass(None, 0.0, no_overlap, |_, _, _| false)
+            .finish_first_pass(None, 0.0, |_, _, _| false)
             .then(|| [[1, 1], [1, 2]].map(|pair| islands.is_final(pair)))
     };
     assert_eq!(both(0.1, 0.3, 0.0), Some([true, false]));
@@ -158,7 +150,7 @@ fn an_island_pushed_to_both_sides_of_a_sheet_keeps_one() {
         // Far from these, all the same way.
         let sheet = Some(SheetSide { shape: Some(0), away: DVec3::Y, height: 1.0 });
         islands.crossings.push(crossing([7, 7], Some(&(-DVec3::Y, 0.1)), sheet));
-        islands.finish_first_pass(None, 0.0, no_overlap, |_, _, _| false);
+        islands.finish_first_pass(None, 0.0, |_, _, _| false);
         [[1, 1], [2, 1], [7, 7]].map(|pair| islands.is_final(pair))
     };
     let both = [DVec3::Y, -DVec3::Y];
@@ -182,7 +174,7 @@ fn few_contacts_do_not_push_through_a_sheet() {
                 Some(SheetSide { shape: Some(0), away: DVec3::Y, height }),
             ));
         }
-        let needs_more = islands.finish_first_pass(None, 0.0, no_overlap, |_, _, _| false);
+        let needs_more = islands.finish_first_pass(None, 0.0, |_, _, _| false);
         (needs_more && is_open(&islands, [1, 0]), islands.is_final([1, 0]), islands)
     };
     let (is_lost, is_final, islands) = finish(0.01, SUPPORTED + 1);
