@@ -3,7 +3,7 @@ use rustc_hash::FxHashMap;
 use sbbk_core::collections::UnionFind;
 use sbbk_core::contact::DoubleCone;
 
-use super::ways::{Directions, SAME_DIRECTION, SAME_SIDE, Ways};
+use super::ways::{Directions, SAME_SIDE, Ways};
 
 /// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
 /// contacts that push each island apart.
@@ -15,8 +15,6 @@ pub(crate) struct OverlapIslands {
     pub(super) touching: Vec<[u32; 2]>,
     /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
     pub(super) separation: Option<DVec3>,
-    /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
-    deepest: Vec<(DVec3, f64)>,
     /// Ways of the reliable contacts, by island.
     ways: Ways,
     /// Crossings, and then the pairs that touch, by index.
@@ -38,8 +36,6 @@ pub(super) struct Support {
     pairs: u32,
     /// Reliable contacts among them.
     reliable: u32,
-    /// True if a contact on the far side of a thin body was rejected. No others are added.
-    is_thin: bool,
     /// Depth of the deepest contact that pushes far, or zero. A contour may know a shorter way.
     farthest: f64,
     /// Way out of the overlap, if the contour has one.
@@ -84,8 +80,7 @@ impl IslandWay {
 
 impl Support {
     fn is_enough(self) -> bool {
-        self.pairs == 0
-            || self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
+        self.pairs == 0 || self.pairs <= SUPPORTED * self.reliable
     }
 
     /// Returns true if the island has no reliable contact.
@@ -264,7 +259,6 @@ impl OverlapIslands {
         small: f64,
         parts: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
-        self.reject_far_sides();
         self.separation = separation;
         for Crossing { normal, place, .. } in &mut self.crossings {
             place.is_rejected |= !leads_apart(*normal, separation);
@@ -365,36 +359,6 @@ impl OverlapIslands {
         leads_apart(normal, self.separation)
     }
 
-    /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against
-    /// each other, the deeper one. (On a sheet the whole island goes to one side instead.)
-    fn reject_far_sides(&mut self) {
-        let Self { crossings, deepest, .. } = self;
-        for side in 0..2 {
-            let by_depth = |a: &Crossing, b: &Crossing| {
-                let by_depth = b.depth.total_cmp(&a.depth);
-                a.pair[side].cmp(&b.pair[side]).then(by_depth).then(a.pair.cmp(&b.pair))
-            };
-            crossings.sort_unstable_by(by_depth);
-            for of_one in crossings.chunk_by_mut(|a, b| a.pair[side] == b.pair[side]) {
-                deepest.clear();
-                for Crossing { normal, depth, .. } in of_one.iter().filter(|one| one.is_reliable) {
-                    if deepest.iter().all(|(known, _)| known.dot(*normal) < SAME_DIRECTION) {
-                        deepest.push((*normal, *depth));
-                    }
-                }
-                let of_bodies = |one: &&mut Crossing| one.is_reliable && one.sheet.is_none();
-                for Crossing { normal, place, .. } in of_one.iter_mut().filter(of_bodies) {
-                    let depth = |sign: f64| {
-                        let like = |way: DVec3| sign * way.dot(*normal) > SAME_SIDE;
-                        deepest.iter().find(|(normal, _)| like(*normal)).map(|(_, depth)| *depth)
-                    };
-                    place.is_rejected |=
-                        depth(-1.0).is_some_and(|against| Some(against) < depth(1.0));
-                }
-            }
-        }
-    }
-
     /// Sums the support of each island.
     fn sum_support(&mut self) {
         self.support.clear();
@@ -408,8 +372,6 @@ impl OverlapIslands {
             support.farthest =
                 support.farthest.max(if is_fine { crossing.far_depth() } else { 0.0 });
             support.normals += if is_fine { crossing.normal } else { DVec3::ZERO };
-            // The side of a sheet is known, so others may be added.
-            support.is_thin |= crossing.sheet.is_none() && crossing.place.is_rejected;
             support.sheet_side +=
                 crossing.sheet.map_or(DVec3::ZERO, |sheet| sheet.height * sheet.away);
             support.sides[0] |= is_fine && crossing.side() > 0.0;

@@ -59,18 +59,6 @@ fn islands_without_a_reliable_contact_need_support() {
     assert!(!islands.finish_first_pass(None, 0.0, |_, _, _| false), "the island is held");
 }
 
-/// Would catch a thin body that is pushed both ways, whichever of the two meshes it is.
-#[test]
-fn of_two_sides_of_a_thin_body_the_nearer_one_counts() {
-    for pair in [|thin, other| [thin, other], |thin, other| [other, thin]] {
-        let mut islands = OverlapIslands::default();
-        islands.crossings.push(crossing(pair(5, 1), Some(&(DVec3::Y, 0.1)), None));
-        islands.crossings.push(crossing(pair(5, 2), Some(&(-DVec3::Y, 0.3)), None));
-        assert!(islands.finish_first_pass(None, 0.0, |_, _, _| false));
-        assert!(islands.is_final(pair(5, 1)) && !islands.is_final(pair(5, 2)));
-    }
-}
-
 /// Would catch a large island that turns about its only contact, and added contacts that push
 /// against reliable ones.
 #[test]
@@ -117,24 +105,6 @@ fn of_contacts_both_ways_those_along_the_way_stay() {
     let mut none = OverlapIslands::default();
     none.crossings.push(crossing([1, 1], None, None));
     assert!(none.is_undecided(), "none is good");
-}
-
-/// Would catch a thin body that is pushed both ways, or by its farther side.
-#[test]
-fn of_two_sides_that_push_against_each_other_the_nearer_one_stays() {
-    let both = |up: f64, down: f64, lean: f64| {
-        let mut islands = OverlapIslands::default();
-        let leaning = DVec3::new(lean.sin(), -lean.cos(), 0.0);
-        islands.crossings.push(crossing([1, 1], Some(&(DVec3::Y, up)), None));
-        islands.crossings.push(crossing([1, 2], Some(&(leaning, down)), None));
-        islands
-            .finish_first_pass(None, 0.0, |_, _, _| false)
-            .then(|| [[1, 1], [1, 2]].map(|pair| islands.is_final(pair)))
-    };
-    assert_eq!(both(0.1, 0.3, 0.0), Some([true, false]));
-    assert_eq!(both(0.3, 0.1, 0.5), Some([false, true]));
-    assert_eq!(both(0.2, 0.2, 0.0), None, "neither is nearer");
-    assert_eq!(both(0.1, 0.3, 1.2), None, "they do not push against each other");
 }
 
 /// Would catch a thin body that is held in a sheet or goes to the wrong side. Would also catch lost
