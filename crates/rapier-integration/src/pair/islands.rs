@@ -21,8 +21,6 @@ pub(crate) struct OverlapIslands {
     islands: UnionFind,
     /// A pair with each triangle.
     with_triangle: FxHashMap<Node, usize>,
-    /// Final contacts, the least deep first.
-    by_depth: Vec<usize>,
     /// Ways that part all pairs of an island at a small depth, and the depths.
     one_ways: Directions,
     /// Support of each island, at the index of its first crossing. Others have no pairs.
@@ -80,7 +78,7 @@ impl IslandWay {
 
 impl Support {
     fn is_enough(self) -> bool {
-        self.pairs == 0 || self.pairs <= SUPPORTED * self.reliable
+        self.pairs <= SUPPORTED * self.reliable
     }
 
     /// Returns true if the island has no reliable contact.
@@ -274,8 +272,7 @@ impl OverlapIslands {
             return false;
         }
         self.join();
-        self.keep_one_way(small, &parts);
-        self.reject_longer(parts);
+        self.keep_one_way(small, parts);
         if are_good(&self.crossings) {
             return false;
         }
