@@ -81,11 +81,6 @@ impl Support {
         self.pairs <= SUPPORTED * self.reliable
     }
 
-    /// Returns true if the island has no reliable contact.
-    pub(super) fn is_missing(self) -> bool {
-        self.reliable == 0
-    }
-
     /// Returns true for the normals of contacts that push neither against the reliable ones, nor through a sheet.
     pub(super) fn agrees(self, normal: DVec3) -> bool {
         leads_apart(normal, self.separation)

@@ -314,8 +314,7 @@ impl<'a> SurfaceFilter<'a> {
         (normal, self.shapes.leaning(over, sheet, self.pair[sheet]))
     }
 
-    /// Second pass: returns a contact for an island whose `support` is not enough. It may be deeper than its points:
-    /// a flat side goes on beyond a triangle.
+    /// Second pass: returns a contact for an island whose `support` is not enough.
     pub(super) fn supporting_contact(
         &self,
         crossing: &Crossing,
@@ -331,18 +330,6 @@ impl<'a> SurfaceFilter<'a> {
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {
             return None;
         }
-        // Between two rows of triangles of a flat side neither has an overlap as deep as that side.
-        let most = (contact.distance + crossing.greatest).max(0.0);
-        let side_beyond = |i: usize, direction: DVec3| {
-            let direction = self.in_frame(i, direction);
-            self.surfaces[i].side_beyond(self.pair[i], direction, most)
-        };
-        let beyond = if support.is_missing() {
-            side_beyond(0, contact.normal) + side_beyond(1, -contact.normal)
-        } else {
-            0.0
-        };
-        let contact = TriangleContact { distance: contact.distance - beyond.min(most), ..contact };
         Some(TriangleSurfaceContact { contact, source: ContactSource::OutwardAxis })
     }
 
