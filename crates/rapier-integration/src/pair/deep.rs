@@ -215,7 +215,7 @@ pub(super) fn add_contacts(
         let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
             continue;
         };
-        if length >= contour.most.min(island[0].most) || !islands.leads_apart(normal) {
+        if length >= contour.most.min(island[0].most) {
             continue;
         }
         contacts.extend(points.iter().zip(exits).filter_map(|((segment, point), exits)| {

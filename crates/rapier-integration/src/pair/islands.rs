@@ -13,8 +13,6 @@ pub(crate) struct OverlapIslands {
     pub(super) crossings: Vec<Crossing>,
     /// Pairs of the first pass that touch without a contact.
     pub(super) touching: Vec<[u32; 2]>,
-    /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
-    pub(super) separation: Option<DVec3>,
     /// Ways of the reliable contacts, by island.
     ways: Ways,
     /// Crossings, and then the pairs that touch, by index.
@@ -44,8 +42,6 @@ pub(super) struct Support {
     sheet_side: DVec3,
     /// True if reliable contacts push off the front and the back of the sheet.
     sides: [bool; 2],
-    /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
-    separation: Option<DVec3>,
 }
 
 /// Number of crossing pairs of an island for which one reliable contact is enough. Higher: bodies deep
@@ -83,8 +79,7 @@ impl Support {
 
     /// Returns true for the normals of contacts that push neither against the reliable ones, nor through a sheet.
     pub(super) fn agrees(self, normal: DVec3) -> bool {
-        leads_apart(normal, self.separation)
-            && self.normals.dot(normal) >= 0.0
+        self.normals.dot(normal) >= 0.0
             && self.sheet_side.dot(normal) >= 0.0
             && self.way.is_none_or(|way| way.has(normal))
     }
@@ -212,7 +207,6 @@ impl OverlapIslands {
     pub(super) fn clear(&mut self) {
         self.crossings.clear();
         self.touching.clear();
-        self.separation = None;
     }
 
     /// Adds the pairs of the next part of the first pass.
@@ -233,29 +227,14 @@ impl OverlapIslands {
         Some(self.crossings[index]).filter(|crossing| !crossing.is_fine())
     }
 
-    /// Returns true if pairs cross, and reliable contacts push about as much one way as the other, or are
-    /// missing. Such contacts would not push out a body that pierces a solid.
-    pub(super) fn is_undecided(&self) -> bool {
-        let reliable = self.crossings.iter().filter(|crossing| crossing.is_reliable);
-        let (count, sum) =
-            reliable.fold((0, DVec3::ZERO), |(count, sum), one| (count + 1, sum + one.normal));
-        let is_none_better = sum.length() <= SAME_SIDE * f64::from(count);
-        !self.crossings.is_empty() && is_none_better
-    }
-
     /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
-    /// the wrong way. `separation`: direction in which mesh 2 separates, if known. `small`: depth of bodies at rest.
+    /// the wrong way. `small`: depth of bodies at rest.
     /// `parts` tells if a way of a length parts two triangles, and both surfaces end there.
     pub(super) fn finish_first_pass(
         &mut self,
-        separation: Option<DVec3>,
         small: f64,
         parts: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
-        self.separation = separation;
-        for Crossing { normal, place, .. } in &mut self.crossings {
-            place.is_rejected |= !leads_apart(*normal, separation);
-        }
         self.crossings.sort_unstable_by_key(|crossing| crossing.pair);
         let pushes_to = |side: f64| self.crossings.iter().any(|crossing| crossing.side() == side);
         let has_both_sides = pushes_to(1.0) && pushes_to(-1.0);
@@ -346,11 +325,6 @@ impl OverlapIslands {
         self.support[island].way = Some(way);
     }
 
-    /// Returns true if a contact does not push against the direction in which the bodies separate.
-    pub(super) fn leads_apart(&self, normal: DVec3) -> bool {
-        leads_apart(normal, self.separation)
-    }
-
     /// Sums the support of each island.
     fn sum_support(&mut self) {
         self.support.clear();
@@ -358,7 +332,6 @@ impl OverlapIslands {
         for crossing in &self.crossings {
             let is_fine = crossing.is_fine();
             let support = &mut self.support[crossing.place.island];
-            support.separation = self.separation;
             support.pairs += 1;
             support.reliable += u32::from(is_fine);
             support.farthest =
@@ -387,10 +360,6 @@ impl OverlapIslands {
         }
         found
     }
-}
-
-fn leads_apart(normal: DVec3, separation: Option<DVec3>) -> bool {
-    separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
 }
 
 mod one_way;

@@ -6,7 +6,6 @@
 //!
 //! A mesh inside a larger one is in a room, or in a solid that pushes it out.
 
-use glamx::DVec3;
 use parry3d::math::{Real, Vector};
 use parry3d::query::{PointQuery, Ray};
 use sbbk_core::surface::SurfaceKind;
@@ -29,29 +28,6 @@ use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
 const LEAN: f64 = 0.33;
 
 impl TriangleShapes<'_> {
-    /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other. The way starts at the
-    /// middle of the smaller one, which must be in both. Two equal meshes are both tried.
-    pub(super) fn separation(&self) -> Option<DVec3> {
-        if !(0..2).all(|i| self[i].is_solid()) {
-            return None;
-        }
-        let sizes = self.shapes.each_ref().map(TriangleShape::size_squared);
-        let is_inner = |i: &usize| sizes[*i] <= sizes[1 - i];
-        let ways = (0..2).filter(is_inner).filter_map(|i| self.way_out(i));
-        ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
-    }
-
-    /// Returns the translation that separates shape 2 from shape 1 by the shortest way from the middle of shape
-    /// `inner`. The middle must be in both shapes, and both must be solids.
-    fn way_out(&self, inner: usize) -> Option<DVec3> {
-        let middle = self[inner].bounds().center();
-        let placed = self.pose.in_other(inner, middle);
-        let out = self[1 - inner].nearest_exit(placed)? - placed;
-        self[inner].nearest_exit(middle)?;
-        let out = if inner == 0 { -(self.pose.pos12.rotation * out) } else { out };
-        Some(out.as_dvec3())
-    }
-
     /// Returns the position of the other shape over the nearest point of a sheet, unless that is at a border.
     pub(super) fn over_sheet(&self, sheet: usize) -> Option<OverSheet> {
         *self.over_sheets[sheet].get_or_init(|| {
@@ -336,20 +312,18 @@ impl<'a> HeldMesh<'a> {
 
     /// Returns the contact that leads the held mesh out of a solid, by the shortest way from its middle.
     ///
-    /// Tests one vertex, unless the middle is known to be in both: a mesh that pierces the surface has contacts.
-    pub(super) fn push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
+    /// Tests one vertex: a mesh that pierces the surface has contacts.
+    pub(super) fn push_out(&self, test: &mut InsideTest) -> Option<TriangleHit> {
         let Self { pose, held, holder, surface, outer, room } = *self;
         let vertex = self.in_holder(held.corners(0)[0]);
-        if !is_in_both {
-            let known = test.known(held.ball(), self.placement());
-            if room != Room::No || known == Some(Room::No) {
-                return None;
-            }
-            self.exit(vertex, test)?;
-            if surface.kind() == SurfaceKind::Sheet {
-                *test = InsideTest::NoSolid;
-                return None;
-            }
+        let known = test.known(held.ball(), self.placement());
+        if room != Room::No || known == Some(Room::No) {
+            return None;
+        }
+        self.exit(vertex, test)?;
+        if surface.kind() == SurfaceKind::Sheet {
+            *test = InsideTest::NoSolid;
+            return None;
         }
         let middle = self.in_holder(held.ball().centre);
         let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {

@@ -306,8 +306,7 @@ impl PairQuery for TriangleQuery<'_> {
             return self.hold(candidates, limits, contacts);
         }
         let lead_one_way = meet_borders(upright, contacts);
-        let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
-        if self.finish_first_pass(islands, separation) {
+        if self.finish_first_pass(islands) {
             self.second_pass(islands, contours, clipped, contacts);
         }
         self.drop_lifted(islands.one_ways(), contacts);
@@ -319,9 +318,8 @@ impl PairQuery for TriangleQuery<'_> {
         self.part_crossing(islands, contacts);
         self.shapes.reject_through(&islands.crossings, contacts);
         if contacts.is_empty() {
-            let is_in_both = islands.separation.is_some();
             let held = HeldMesh::of(&self.shapes);
-            contacts.extend(held.and_then(|held| held.push_out(is_in_both, self.inside)));
+            contacts.extend(held.and_then(|held| held.push_out(self.inside)));
         }
         if contacts.is_empty() {
             contacts.extend(self.of_overlaps(islands));

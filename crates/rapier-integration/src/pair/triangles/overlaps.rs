@@ -13,14 +13,10 @@ use crate::pair::ways::{SAME_DIRECTION, SMALL, greatest_overlap};
 
 impl TriangleQuery<'_> {
     /// Ends the first pass. Returns true if a second pass is needed.
-    pub(super) fn finish_first_pass(
-        &self,
-        islands: &mut OverlapIslands,
-        separation: Option<DVec3>,
-    ) -> bool {
+    pub(super) fn finish_first_pass(&self, islands: &mut OverlapIslands) -> bool {
         let small = SMALL * self.shapes.filter_distance;
         let parts = |pair: [u32; 2], way: DVec3, length: f64| self.parts(pair, way, length);
-        islands.finish_first_pass(separation, small, parts)
+        islands.finish_first_pass(small, parts)
     }
 
     /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
