@@ -40,8 +40,6 @@ pub(super) struct Support {
     normals: DVec3,
     /// Direction off a sheet, to the side on which the middle of a solid is; zero without a sheet.
     sheet_side: DVec3,
-    /// True if reliable contacts push off the front and the back of the sheet.
-    sides: [bool; 2],
 }
 
 /// Number of crossing pairs of an island for which one reliable contact is enough. Higher: bodies deep
@@ -166,12 +164,6 @@ impl Crossing {
         self.is_reliable && !self.place.is_rejected
     }
 
-    /// Returns the side of a sheet to which the contact pushes: 1 front, -1 back, 0 neither.
-    fn side(&self) -> f64 {
-        let along = self.sheet.map_or(0.0, |sheet| sheet.away.dot(self.normal));
-        if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
-    }
-
     /// Returns the depth of a contact that pushes far out of a solid, or zero.
     fn far_depth(&self) -> f64 {
         let is_far = self.sheet.is_none() && self.depth > FAR * self.greatest;
@@ -236,10 +228,8 @@ impl OverlapIslands {
         parts: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
         self.crossings.sort_unstable_by_key(|crossing| crossing.pair);
-        let pushes_to = |side: f64| self.crossings.iter().any(|crossing| crossing.side() == side);
-        let has_both_sides = pushes_to(1.0) && pushes_to(-1.0);
         let is_good = |crossing: &Crossing| crossing.is_fine() && crossing.far_depth() == 0.0;
-        let are_good = |all: &[Crossing]| !has_both_sides && all.iter().all(is_good);
+        let are_good = |all: &[Crossing]| all.iter().all(is_good);
         self.one_ways.clear();
         if are_good(&self.crossings) && self.are_within(SAME_SIDE) {
             self.note_one_way(small);
@@ -251,10 +241,6 @@ impl OverlapIslands {
             return false;
         }
         self.sum_support();
-        let has_sheet = self.crossings.iter().any(|crossing| crossing.sheet.is_some());
-        if has_sheet && self.reject_sides_of_sheets() {
-            self.sum_support();
-        }
         let needs_more = |support: &Support| !support.is_enough() || support.farthest > 0.0;
         let is_rejected = |crossing: &Crossing| crossing.place.is_rejected;
         self.crossings.iter().any(is_rejected) || self.support.iter().any(needs_more)
@@ -339,26 +325,7 @@ impl OverlapIslands {
             support.normals += if is_fine { crossing.normal } else { DVec3::ZERO };
             support.sheet_side +=
                 crossing.sheet.map_or(DVec3::ZERO, |sheet| sheet.height * sheet.away);
-            support.sides[0] |= is_fine && crossing.side() > 0.0;
-            support.sides[1] |= is_fine && crossing.side() < 0.0;
         }
-    }
-
-    /// Rejects contacts that push a solid to the wrong side of a sheet, in islands whose contacts
-    /// push to both sides or are too few. The middle of the solid is on the right side.
-    /// Returns true if there were any.
-    fn reject_sides_of_sheets(&mut self) -> bool {
-        let mut found = false;
-        for Crossing { normal, is_reliable, place, .. } in &mut self.crossings {
-            let support = &self.support[place.island];
-            let is_doubtful = support.sides == [true; 2] || !support.is_enough();
-            let side = support.sheet_side;
-            let is_against = normal.dot(side) < -SAME_SIDE * side.length();
-            if *is_reliable && is_doubtful && is_against && !place.is_rejected {
-                (place.is_rejected, found) = (true, true);
-            }
-        }
-        found
     }
 }
 
