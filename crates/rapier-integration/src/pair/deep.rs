@@ -233,9 +233,7 @@ pub(super) fn remove_farther(
     islands: &mut OverlapIslands,
     contacts: &mut ContactList<TriangleSurfaceContact>,
 ) {
-    if islands.has_ways() {
-        contacts.retain(|hit| !pushes_farther(shapes, islands, hit));
-    }
+    contacts.retain(|hit| !pushes_farther(shapes, islands, hit));
 }
 
 /// Returns true if a contact pushes aside, and by more than the way out of its island, which parts its triangles as well.

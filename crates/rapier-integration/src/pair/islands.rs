@@ -9,7 +9,7 @@ use super::ways::{Directions, SAME_SIDE, Ways};
 /// contacts that push each island apart.
 #[derive(Default)]
 pub(crate) struct OverlapIslands {
-    /// Pairs of the first pass that cross or have passed each other. In the order of pairs after the first pass.
+    /// Pairs of the first pass that cross or have passed each other, in the order of pairs.
     pub(super) crossings: Vec<Crossing>,
     /// Pairs of the first pass that touch without a contact.
     pub(super) touching: Vec<[u32; 2]>,
@@ -227,17 +227,15 @@ impl OverlapIslands {
         small: f64,
         parts: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
-        self.crossings.sort_unstable_by_key(|crossing| crossing.pair);
         let is_good = |crossing: &Crossing| crossing.is_fine() && crossing.far_depth() == 0.0;
-        let are_good = |all: &[Crossing]| all.iter().all(is_good);
         self.one_ways.clear();
-        if are_good(&self.crossings) && self.are_within(SAME_SIDE) {
+        if self.crossings.iter().all(is_good) && self.are_within(SAME_SIDE) {
             self.note_one_way(small);
             return false;
         }
         self.join();
         self.keep_one_way(small, parts);
-        if are_good(&self.crossings) {
+        if self.crossings.iter().all(is_good) {
             return false;
         }
         self.sum_support();
@@ -294,11 +292,6 @@ impl OverlapIslands {
             }
         }
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
-    }
-
-    /// Returns true if the way out of an island is known.
-    pub(super) fn has_ways(&self) -> bool {
-        self.support.iter().any(|support| support.way.is_some())
     }
 
     /// Returns the way out of the overlap that a crossing pair belongs to, if it is known.
