@@ -128,16 +128,10 @@ pub(super) struct Crossing {
     pub(super) is_sheet: [bool; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
-    pub(super) place: IslandPlace,
-}
-
-/// Place of a crossing in an island.
-#[derive(Copy, Clone, Default)]
-pub(super) struct IslandPlace {
     /// True if the contact of the first pass pushes the wrong way.
-    is_rejected: bool,
+    pub(super) is_rejected: bool,
     /// Index of the first crossing of the island.
-    island: usize,
+    pub(super) island: usize,
 }
 
 /// Position of a body relative to a triangle of a sheet.
@@ -161,7 +155,7 @@ impl SheetSide {
 impl Crossing {
     /// Returns true if the contact of the pair is reliable and pushes the right way.
     fn is_fine(&self) -> bool {
-        self.is_reliable && !self.place.is_rejected
+        self.is_reliable && !self.is_rejected
     }
 
     /// Returns the depth of a contact that pushes far out of a solid, or zero.
@@ -240,7 +234,7 @@ impl OverlapIslands {
         }
         self.sum_support();
         let needs_more = |support: &Support| !support.is_enough() || support.farthest > 0.0;
-        let is_rejected = |crossing: &Crossing| crossing.place.is_rejected;
+        let is_rejected = |crossing: &Crossing| crossing.is_rejected;
         self.crossings.iter().any(is_rejected) || self.support.iter().any(needs_more)
     }
 
@@ -257,7 +251,7 @@ impl OverlapIslands {
             }
         }
         for (index, crossing) in crossings.iter_mut().enumerate() {
-            crossing.place.island = islands.first(index);
+            crossing.island = islands.first(index);
         }
     }
 
@@ -274,7 +268,7 @@ impl OverlapIslands {
 
     /// Returns the support of the island of a crossing, if that has too few reliable contacts.
     pub(super) fn open_support(&self, crossing: &Crossing) -> Option<Support> {
-        Some(self.support[crossing.place.island]).filter(|support| !support.is_enough())
+        Some(self.support[crossing.island]).filter(|support| !support.is_enough())
     }
 
     /// Replaces `list` by the crossings in islands whose contacts are too few or push far, one island after another. Crossings
@@ -283,7 +277,7 @@ impl OverlapIslands {
         list.clear();
         for crossing in self.crossings.iter().filter(|crossing| crossing.is_crossing) {
             let Some(outward) = crossing.outward_signs() else { continue };
-            let Crossing { pair, is_sheet, place: IslandPlace { island, .. }, .. } = *crossing;
+            let Crossing { pair, is_sheet, island, .. } = *crossing;
             let support = self.support[island];
             let most = if support.is_enough() { support.farthest } else { f64::INFINITY };
             if most > 0.0 {
@@ -296,7 +290,7 @@ impl OverlapIslands {
 
     /// Returns the way out of the overlap that a crossing pair belongs to, if it is known.
     pub(super) fn way(&self, pair: [u32; 2]) -> Option<IslandWay> {
-        self.support[self.crossing(pair)?.place.island].way
+        self.support[self.crossing(pair)?.island].way
     }
 
     /// Sets the way out of the overlap of an island.
@@ -310,7 +304,7 @@ impl OverlapIslands {
         self.support.resize(self.crossings.len(), Support::default());
         for crossing in &self.crossings {
             let is_fine = crossing.is_fine();
-            let support = &mut self.support[crossing.place.island];
+            let support = &mut self.support[crossing.island];
             support.pairs += 1;
             support.reliable += u32::from(is_fine);
             support.farthest =

@@ -18,7 +18,7 @@ use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleCon
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
-use super::islands::{Crossing, IslandPlace, SheetSide, Support};
+use super::islands::{Crossing, SheetSide, Support};
 use super::shapes::{
     ContactSource, DISTANT, LIP, NEAR_NORMAL, OverSheet, ShapeFacets, TriangleShapes,
     TriangleSurfaceContact,
@@ -263,7 +263,8 @@ impl<'a> SurfaceFilter<'a> {
             outward,
             is_sheet: [0, 1].map(|i| outward[i] != Some(self.shapes[i].outward())),
             sheet,
-            place: IslandPlace::default(),
+            is_rejected: false,
+            island: 0,
         };
         let source = ContactSource::OutwardAxis;
         Verdict::Crossing(crossing, good.map(|contact| TriangleSurfaceContact { contact, source }))

@@ -33,18 +33,18 @@ impl OverlapIslands {
         let Self { crossings, ways, one_ways, .. } = self;
         ways.clear();
         for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
-            ways.add(crossing.place.island, crossing.normal, crossing.depth);
+            ways.add(crossing.island, crossing.normal, crossing.depth);
         }
-        for &Crossing { pair, normal, place, .. } in &*crossings {
+        for &Crossing { pair, normal, island, .. } in &*crossings {
             let parts = |way: DVec3, depth: f64| parts(pair, way, depth);
-            ways.keep_parting(place.island, normal, small, parts);
+            ways.keep_parting(island, normal, small, parts);
         }
-        for (index, Crossing { normal, place, .. }) in crossings.iter_mut().enumerate() {
-            let Some((way, depth)) = ways.least(place.island) else { continue };
-            if place.island == index {
+        for (index, crossing) in crossings.iter_mut().enumerate() {
+            let Some((way, depth)) = ways.least(crossing.island) else { continue };
+            if crossing.island == index {
                 add_direction(one_ways, way, depth);
             }
-            place.is_rejected |= way.dot(*normal) < SAME_SIDE;
+            crossing.is_rejected |= way.dot(crossing.normal) < SAME_SIDE;
         }
     }
 

@@ -16,12 +16,13 @@ fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>)
         outward: [sheet.is_none().then_some(1.0), Some(1.0)],
         is_sheet: [false; 2],
         sheet,
-        place: IslandPlace::default(),
+        is_rejected: false,
+        island: 0,
     }
 }
 
 fn support(islands: &OverlapIslands, pair: [u32; 2]) -> Support {
-    islands.support[islands.crossing(pair).unwrap().place.island]
+    islands.support[islands.crossing(pair).unwrap().island]
 }
 
 fn is_open(islands: &OverlapIslands, pair: [u32; 2]) -> bool {
