@@ -215,7 +215,7 @@ pub(super) fn add_contacts(
         let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
             continue;
         };
-        if length >= contour.most.min(island[0].most) || !islands.leads_apart(normal) {
+        if length >= contour.most.min(island[0].most) {
             continue;
         }
         contacts.extend(points.iter().zip(exits).filter_map(|((segment, point), exits)| {
@@ -233,9 +233,7 @@ pub(super) fn remove_farther(
     islands: &mut OverlapIslands,
     contacts: &mut ContactList<TriangleSurfaceContact>,
 ) {
-    if islands.has_ways() {
-        contacts.retain(|hit| !pushes_farther(shapes, islands, hit));
-    }
+    contacts.retain(|hit| !pushes_farther(shapes, islands, hit));
 }
 
 /// Returns true if a contact pushes aside, and by more than the way out of its island, which parts its triangles as well.

@@ -3,28 +3,22 @@ use rustc_hash::FxHashMap;
 use sbbk_core::collections::UnionFind;
 use sbbk_core::contact::DoubleCone;
 
-use super::ways::{Directions, SAME_DIRECTION, SAME_SIDE, Ways};
+use super::ways::{Directions, SAME_SIDE, Ways};
 
 /// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
 /// contacts that push each island apart.
 #[derive(Default)]
 pub(crate) struct OverlapIslands {
-    /// Pairs of the first pass that cross or have passed each other. In the order of pairs after the first pass.
+    /// Pairs of the first pass that cross or have passed each other, in the order of pairs.
     pub(super) crossings: Vec<Crossing>,
     /// Pairs of the first pass that touch without a contact.
     pub(super) touching: Vec<[u32; 2]>,
-    /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
-    pub(super) separation: Option<DVec3>,
-    /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
-    deepest: Vec<(DVec3, f64)>,
     /// Ways of the reliable contacts, by island.
     ways: Ways,
     /// Crossings, and then the pairs that touch, by index.
     islands: UnionFind,
     /// A pair with each triangle.
     with_triangle: FxHashMap<Node, usize>,
-    /// Final contacts, the least deep first.
-    by_depth: Vec<usize>,
     /// Ways that part all pairs of an island at a small depth, and the depths.
     one_ways: Directions,
     /// Support of each island, at the index of its first crossing. Others have no pairs.
@@ -38,8 +32,6 @@ pub(super) struct Support {
     pairs: u32,
     /// Reliable contacts among them.
     reliable: u32,
-    /// True if a contact on the far side of a thin body was rejected. No others are added.
-    is_thin: bool,
     /// Depth of the deepest contact that pushes far, or zero. A contour may know a shorter way.
     farthest: f64,
     /// Way out of the overlap, if the contour has one.
@@ -48,10 +40,6 @@ pub(super) struct Support {
     normals: DVec3,
     /// Direction off a sheet, to the side on which the middle of a solid is; zero without a sheet.
     sheet_side: DVec3,
-    /// True if reliable contacts push off the front and the back of the sheet.
-    sides: [bool; 2],
-    /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
-    separation: Option<DVec3>,
 }
 
 /// Number of crossing pairs of an island for which one reliable contact is enough. Higher: bodies deep
@@ -84,19 +72,12 @@ impl IslandWay {
 
 impl Support {
     fn is_enough(self) -> bool {
-        self.pairs == 0
-            || self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
-    }
-
-    /// Returns true if the island has no reliable contact.
-    pub(super) fn is_missing(self) -> bool {
-        self.reliable == 0
+        self.pairs <= SUPPORTED * self.reliable
     }
 
     /// Returns true for the normals of contacts that push neither against the reliable ones, nor through a sheet.
     pub(super) fn agrees(self, normal: DVec3) -> bool {
-        leads_apart(normal, self.separation)
-            && self.normals.dot(normal) >= 0.0
+        self.normals.dot(normal) >= 0.0
             && self.sheet_side.dot(normal) >= 0.0
             && self.way.is_none_or(|way| way.has(normal))
     }
@@ -108,16 +89,8 @@ impl Support {
     }
 }
 
-/// A triangle and its group: 0 for mesh 1, 1 for mesh 2. The triangles of [unserved](IslandPlace::is_unserved) pairs are of the
-/// groups 2 and 3.
+/// A triangle, and its mesh: 0 or 1.
 type Node = (usize, u32);
-
-/// Overlap of two triangles along a direction.
-pub(super) struct Overlap {
-    pub(super) length: f64,
-    /// True if the direction leads out of a face of one of the triangles, rather than along it.
-    pub(super) leads_out: bool,
-}
 
 /// A crossing of an island that has too few contacts.
 pub(super) struct Unsupported {
@@ -155,18 +128,10 @@ pub(super) struct Crossing {
     pub(super) is_sheet: [bool; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
-    pub(super) place: IslandPlace,
-}
-
-/// Place of a crossing in an island.
-#[derive(Copy, Clone, Default)]
-pub(super) struct IslandPlace {
     /// True if the contact of the first pass pushes the wrong way.
-    is_rejected: bool,
-    /// True if no reliable contact of the island would separate the pair. Such pairs form islands of their own.
-    is_unserved: bool,
+    pub(super) is_rejected: bool,
     /// Index of the first crossing of the island.
-    island: usize,
+    pub(super) island: usize,
 }
 
 /// Position of a body relative to a triangle of a sheet.
@@ -190,19 +155,7 @@ impl SheetSide {
 impl Crossing {
     /// Returns true if the contact of the pair is reliable and pushes the right way.
     fn is_fine(&self) -> bool {
-        self.is_reliable && !self.place.is_rejected
-    }
-
-    /// Returns the triangles by which islands are joined.
-    fn nodes(&self) -> [Node; 2] {
-        let first = 2 * usize::from(self.place.is_unserved);
-        [(first, self.pair[0]), (first + 1, self.pair[1])]
-    }
-
-    /// Returns the side of a sheet to which the contact pushes: 1 front, -1 back, 0 neither.
-    fn side(&self) -> f64 {
-        let along = self.sheet.map_or(0.0, |sheet| sheet.away.dot(self.normal));
-        if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
+        self.is_reliable && !self.is_rejected
     }
 
     /// Returns the depth of a contact that pushes far out of a solid, or zero.
@@ -240,19 +193,12 @@ impl OverlapIslands {
     pub(super) fn clear(&mut self) {
         self.crossings.clear();
         self.touching.clear();
-        self.separation = None;
     }
 
     /// Adds the pairs of the next part of the first pass.
     pub(super) fn append(&mut self, next: Self) {
         self.crossings.extend(next.crossings);
         self.touching.extend(next.touching);
-    }
-
-    /// Returns the triangles of shape `i` with final contacts, and the normals of these.
-    pub(super) fn final_normals(&self, i: usize) -> impl Iterator<Item = (u32, DVec3)> {
-        let fine = self.crossings.iter().filter(|crossing| crossing.is_fine());
-        fine.map(move |crossing| (crossing.pair[i], crossing.normal))
     }
 
     /// Returns the pairs that cross, or touch if none do.
@@ -267,58 +213,28 @@ impl OverlapIslands {
         Some(self.crossings[index]).filter(|crossing| !crossing.is_fine())
     }
 
-    /// Returns true if pairs cross, and reliable contacts push about as much one way as the other, or are
-    /// missing. Such contacts would not push out a body that pierces a solid.
-    pub(super) fn is_undecided(&self) -> bool {
-        let reliable = self.crossings.iter().filter(|crossing| crossing.is_reliable);
-        let (count, sum) =
-            reliable.fold((0, DVec3::ZERO), |(count, sum), one| (count + 1, sum + one.normal));
-        let is_none_better = sum.length() <= SAME_SIDE * f64::from(count);
-        !self.crossings.is_empty() && is_none_better
-    }
-
     /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
-    /// the wrong way. `separation`: direction in which mesh 2 separates, if known. `small`: depth of bodies at rest.
-    /// `overlap` returns the overlap of two triangles along a direction. `parts` tells if a way of a length parts two
-    /// triangles, and both surfaces end there.
+    /// the wrong way. `small`: depth of bodies at rest.
+    /// `parts` tells if a way of a length parts two triangles, and both surfaces end there.
     pub(super) fn finish_first_pass(
         &mut self,
-        separation: Option<DVec3>,
         small: f64,
-        overlap: impl Fn([u32; 2], DVec3) -> Overlap,
         parts: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
-        self.reject_far_sides();
-        self.separation = separation;
-        for Crossing { normal, place, .. } in &mut self.crossings {
-            place.is_rejected |= !leads_apart(*normal, separation);
-        }
-        self.crossings.sort_unstable_by_key(|crossing| crossing.pair);
-        let pushes_to = |side: f64| self.crossings.iter().any(|crossing| crossing.side() == side);
-        let has_both_sides = pushes_to(1.0) && pushes_to(-1.0);
         let is_good = |crossing: &Crossing| crossing.is_fine() && crossing.far_depth() == 0.0;
-        let are_good = |all: &[Crossing]| !has_both_sides && all.iter().all(is_good);
         self.one_ways.clear();
-        if are_good(&self.crossings) && self.are_within(SAME_SIDE) {
+        if self.crossings.iter().all(is_good) && self.are_within(SAME_SIDE) {
             self.note_one_way(small);
             return false;
         }
         self.join();
-        self.keep_one_way(small, &parts);
-        self.reject_longer(parts);
-        if are_good(&self.crossings) {
+        self.keep_one_way(small, parts);
+        if self.crossings.iter().all(is_good) {
             return false;
         }
-        if self.find_unserved(overlap) {
-            self.join();
-        }
         self.sum_support();
-        let has_sheet = self.crossings.iter().any(|crossing| crossing.sheet.is_some());
-        if has_sheet && self.reject_sides_of_sheets() {
-            self.sum_support();
-        }
         let needs_more = |support: &Support| !support.is_enough() || support.farthest > 0.0;
-        let is_rejected = |crossing: &Crossing| crossing.place.is_rejected;
+        let is_rejected = |crossing: &Crossing| crossing.is_rejected;
         self.crossings.iter().any(is_rejected) || self.support.iter().any(needs_more)
     }
 
@@ -328,43 +244,15 @@ impl OverlapIslands {
         islands.reset(crossings.len() + touching.len());
         with_triangle.clear();
         // Triangles on opposite sides of crossing edges only touch.
-        let touching = touching.iter().map(|&[one, two]| [(0, one), (1, two)]);
-        let nodes = crossings.iter().map(Crossing::nodes).chain(touching);
-        for (index, node) in nodes.enumerate().flat_map(|(i, nodes)| nodes.map(|node| (i, node))) {
-            islands.join(*with_triangle.entry(node).or_insert(index), index);
+        let pairs = crossings.iter().map(|crossing| &crossing.pair).chain(&*touching);
+        for (index, &[one, two]) in pairs.enumerate() {
+            for node in [(0, one), (1, two)] {
+                islands.join(*with_triangle.entry(node).or_insert(index), index);
+            }
         }
         for (index, crossing) in crossings.iter_mut().enumerate() {
-            crossing.place.island = islands.first(index);
+            crossing.island = islands.first(index);
         }
-    }
-
-    /// Finds the pairs that no reliable contact of their island separates, and returns true if there are any. A contact with a
-    /// floor does not part a body from a wall, though one triangle of the body may cross both.
-    fn find_unserved(&mut self, overlap: impl Fn([u32; 2], DVec3) -> Overlap) -> bool {
-        let Self { crossings, ways, .. } = self;
-        ways.clear();
-        for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
-            let known = ways.of(crossing.place.island);
-            if known.iter().all(|(way, _)| way.dot(crossing.normal) < SAME_DIRECTION) {
-                // Pairs that need a way beyond the limit get a closer look.
-                let _ = known.try_push((crossing.normal, crossing.greatest));
-            }
-        }
-        for Crossing { pair, place, .. } in &*crossings {
-            for (way, length) in ways.of(place.island) {
-                let overlap = overlap(*pair, *way);
-                *length = length.max(if overlap.leads_out { overlap.length } else { 0.0 });
-            }
-        }
-        let mut found = false;
-        for crossing in crossings.iter_mut().filter(|crossing| !crossing.is_fine()) {
-            let is_longer =
-                |(way, length): &(DVec3, f64)| overlap(crossing.pair, *way).length > *length;
-            let known = ways.of(crossing.place.island);
-            crossing.place.is_unserved = !known.is_empty() && known.iter().all(is_longer);
-            found |= crossing.place.is_unserved;
-        }
-        found
     }
 
     /// Returns the crossing of a pair.
@@ -380,7 +268,7 @@ impl OverlapIslands {
 
     /// Returns the support of the island of a crossing, if that has too few reliable contacts.
     pub(super) fn open_support(&self, crossing: &Crossing) -> Option<Support> {
-        Some(self.support[crossing.place.island]).filter(|support| !support.is_enough())
+        Some(self.support[crossing.island]).filter(|support| !support.is_enough())
     }
 
     /// Replaces `list` by the crossings in islands whose contacts are too few or push far, one island after another. Crossings
@@ -389,7 +277,7 @@ impl OverlapIslands {
         list.clear();
         for crossing in self.crossings.iter().filter(|crossing| crossing.is_crossing) {
             let Some(outward) = crossing.outward_signs() else { continue };
-            let Crossing { pair, is_sheet, place: IslandPlace { island, .. }, .. } = *crossing;
+            let Crossing { pair, is_sheet, island, .. } = *crossing;
             let support = self.support[island];
             let most = if support.is_enough() { support.farthest } else { f64::INFINITY };
             if most > 0.0 {
@@ -400,54 +288,14 @@ impl OverlapIslands {
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
     }
 
-    /// Returns true if the way out of an island is known.
-    pub(super) fn has_ways(&self) -> bool {
-        self.support.iter().any(|support| support.way.is_some())
-    }
-
     /// Returns the way out of the overlap that a crossing pair belongs to, if it is known.
     pub(super) fn way(&self, pair: [u32; 2]) -> Option<IslandWay> {
-        self.support[self.crossing(pair)?.place.island].way
+        self.support[self.crossing(pair)?.island].way
     }
 
     /// Sets the way out of the overlap of an island.
     pub(super) fn set_way(&mut self, island: usize, way: IslandWay) {
         self.support[island].way = Some(way);
-    }
-
-    /// Returns true if a contact does not push against the direction in which the bodies separate.
-    pub(super) fn leads_apart(&self, normal: DVec3) -> bool {
-        leads_apart(normal, self.separation)
-    }
-
-    /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against
-    /// each other, the deeper one. (On a sheet the whole island goes to one side instead.)
-    fn reject_far_sides(&mut self) {
-        let Self { crossings, deepest, .. } = self;
-        for side in 0..2 {
-            let by_depth = |a: &Crossing, b: &Crossing| {
-                let by_depth = b.depth.total_cmp(&a.depth);
-                a.pair[side].cmp(&b.pair[side]).then(by_depth).then(a.pair.cmp(&b.pair))
-            };
-            crossings.sort_unstable_by(by_depth);
-            for of_one in crossings.chunk_by_mut(|a, b| a.pair[side] == b.pair[side]) {
-                deepest.clear();
-                for Crossing { normal, depth, .. } in of_one.iter().filter(|one| one.is_reliable) {
-                    if deepest.iter().all(|(known, _)| known.dot(*normal) < SAME_DIRECTION) {
-                        deepest.push((*normal, *depth));
-                    }
-                }
-                let of_bodies = |one: &&mut Crossing| one.is_reliable && one.sheet.is_none();
-                for Crossing { normal, place, .. } in of_one.iter_mut().filter(of_bodies) {
-                    let depth = |sign: f64| {
-                        let like = |way: DVec3| sign * way.dot(*normal) > SAME_SIDE;
-                        deepest.iter().find(|(normal, _)| like(*normal)).map(|(_, depth)| *depth)
-                    };
-                    place.is_rejected |=
-                        depth(-1.0).is_some_and(|against| Some(against) < depth(1.0));
-                }
-            }
-        }
     }
 
     /// Sums the support of each island.
@@ -456,42 +304,16 @@ impl OverlapIslands {
         self.support.resize(self.crossings.len(), Support::default());
         for crossing in &self.crossings {
             let is_fine = crossing.is_fine();
-            let support = &mut self.support[crossing.place.island];
-            support.separation = self.separation;
+            let support = &mut self.support[crossing.island];
             support.pairs += 1;
             support.reliable += u32::from(is_fine);
             support.farthest =
                 support.farthest.max(if is_fine { crossing.far_depth() } else { 0.0 });
             support.normals += if is_fine { crossing.normal } else { DVec3::ZERO };
-            // The side of a sheet is known, so others may be added.
-            support.is_thin |= crossing.sheet.is_none() && crossing.place.is_rejected;
             support.sheet_side +=
                 crossing.sheet.map_or(DVec3::ZERO, |sheet| sheet.height * sheet.away);
-            support.sides[0] |= is_fine && crossing.side() > 0.0;
-            support.sides[1] |= is_fine && crossing.side() < 0.0;
         }
     }
-
-    /// Rejects contacts that push a solid to the wrong side of a sheet, in islands whose contacts
-    /// push to both sides or are too few. The middle of the solid is on the right side.
-    /// Returns true if there were any.
-    fn reject_sides_of_sheets(&mut self) -> bool {
-        let mut found = false;
-        for Crossing { normal, is_reliable, place, .. } in &mut self.crossings {
-            let support = &self.support[place.island];
-            let is_doubtful = support.sides == [true; 2] || !support.is_enough();
-            let side = support.sheet_side;
-            let is_against = normal.dot(side) < -SAME_SIDE * side.length();
-            if *is_reliable && is_doubtful && is_against && !place.is_rejected {
-                (place.is_rejected, found) = (true, true);
-            }
-        }
-        found
-    }
-}
-
-fn leads_apart(normal: DVec3, separation: Option<DVec3>) -> bool {
-    separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
 }
 
 mod one_way;

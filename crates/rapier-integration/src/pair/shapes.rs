@@ -20,7 +20,7 @@ use sbbk_core::volumes::rounding::gamma;
 use super::field::Field;
 use super::pose::{Moving, PairPose};
 use super::reduce::FILTERED;
-use crate::mesh::{BEHIND, LazySurface, MeshFacets, MeshView, exit, is_covered};
+use crate::mesh::{LazySurface, MeshFacets, MeshView, exit};
 
 /// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
 /// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
@@ -368,16 +368,6 @@ impl TriangleShape<'_> {
             }
             Self::Field(FieldShape { field, .. }) => field.nearest(point),
         }
-    }
-
-    /// Returns the nearest point of the surface, if a point is inside.
-    pub(super) fn nearest_exit(&self, point: Vector) -> Option<Vector> {
-        let may_be_inside = match self {
-            Self::Mesh(mesh) => is_covered(mesh.view.mesh, point),
-            Self::Field(_) => true,
-        };
-        let (exit, behind) = may_be_inside.then(|| self.nearest(point))??;
-        (behind >= BEHIND).then_some(exit)
     }
 
     /// Returns the distance in which a ray from a point inside leaves the shape, and the outward normal there. `None`

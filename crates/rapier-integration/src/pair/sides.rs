@@ -4,27 +4,20 @@
 //! to the middle tells that side for all triangles, so they agree on wavy grounds. A body whose middle is a little
 //! behind the sheet may come from either side. The contacts of the triangles then hold it, as they push both ways.
 //!
-//! The part of a sheet beyond another sheet would be pushed farther. Its triangles are found from neighbour to
-//! neighbour, from the crossing ones on. Their contacts push against the contacts of the crossing triangles.
-//!
 //! A mesh inside a larger one is in a room, or in a solid that pushes it out.
 
-use std::collections::hash_map::Entry;
-
-use glamx::DVec3;
 use parry3d::math::{Real, Vector};
 use parry3d::query::{PointQuery, Ray};
-use rustc_hash::FxHashMap;
-use sbbk_core::surface::{Facets, SurfaceKind};
+use sbbk_core::surface::SurfaceKind;
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
-use super::islands::{Crossing, OverlapIslands};
+use super::islands::Crossing;
 use super::pose::PairPose;
 use super::query::ContactList;
 use super::shapes::{
-    ContactSource, LIP, MeshShape, NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape,
-    TriangleShapes, TriangleSurfaceContact, filter_distance, filter_unit,
+    LIP, MeshShape, NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape, TriangleShapes,
+    TriangleSurfaceContact, filter_distance, filter_unit,
 };
 use super::ways::SAME_SIDE;
 use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
@@ -35,29 +28,6 @@ use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
 const LEAN: f64 = 0.33;
 
 impl TriangleShapes<'_> {
-    /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other. The way starts at the
-    /// middle of the smaller one, which must be in both. Two equal meshes are both tried.
-    pub(super) fn separation(&self) -> Option<DVec3> {
-        if !(0..2).all(|i| self[i].is_solid()) {
-            return None;
-        }
-        let sizes = self.shapes.each_ref().map(TriangleShape::size_squared);
-        let is_inner = |i: &usize| sizes[*i] <= sizes[1 - i];
-        let ways = (0..2).filter(is_inner).filter_map(|i| self.way_out(i));
-        ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
-    }
-
-    /// Returns the translation that separates shape 2 from shape 1 by the shortest way from the middle of shape
-    /// `inner`. The middle must be in both shapes, and both must be solids.
-    fn way_out(&self, inner: usize) -> Option<DVec3> {
-        let middle = self[inner].bounds().center();
-        let placed = self.pose.in_other(inner, middle);
-        let out = self[1 - inner].nearest_exit(placed)? - placed;
-        self[inner].nearest_exit(middle)?;
-        let out = if inner == 0 { -(self.pose.pos12.rotation * out) } else { out };
-        Some(out.as_dvec3())
-    }
-
     /// Returns the position of the other shape over the nearest point of a sheet, unless that is at a border.
     pub(super) fn over_sheet(&self, sheet: usize) -> Option<OverSheet> {
         *self.over_sheets[sheet].get_or_init(|| {
@@ -117,101 +87,6 @@ impl TriangleShapes<'_> {
         let away = [over.front, -over.front][sheet] * height.signum();
         contacts.retain(|(_, hit)| hit.contact.normal.dot(away) > -SAME_SIDE);
     }
-
-    /// Removes the contacts of sheets that have passed sheets.
-    pub(super) fn reject_passed(
-        &self,
-        islands: &OverlapIslands,
-        passed: &mut PassedTriangles,
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        // Surfaces are asked for only where something crosses.
-        let Some(Crossing { pair, .. }) = islands.crossings.first() else { return };
-        if self[0].is_solid() || self[1].is_solid() {
-            return;
-        }
-        for i in 0..2 {
-            if let Some(surface) = self[i].around(pair[i]) {
-                passed.reject(i, &surface.facets, islands.final_normals(i), contacts);
-            }
-        }
-    }
-}
-
-/// Search for triangles that have passed another sheet. Keeps its memory.
-#[derive(Default)]
-pub(crate) struct PassedTriangles {
-    /// Triangles with the normals of their contacts apart, sorted by triangle.
-    apart: Vec<(u32, DVec3)>,
-    /// Triangles that cross or have passed, in the order of discovery, and the directions in which
-    /// the crossing ones push.
-    found: Vec<(u32, DVec3)>,
-    /// The directions by triangle.
-    directions: FxHashMap<u32, DVec3>,
-}
-
-impl PassedTriangles {
-    /// Removes the contacts of triangles of shape `i` that have passed the other shape. `crossing` has
-    /// triangles of shape `i`, and the directions in which their contacts push.
-    pub(super) fn reject(
-        &mut self,
-        i: usize,
-        surface: &impl Facets,
-        crossing: impl Iterator<Item = (u32, DVec3)>,
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        self.apart.clear();
-        let apart = contacts.iter().filter(|(_, contact)| is_apart(contact));
-        self.apart.extend(apart.map(|(pair, contact)| (pair[i], contact.contact.normal)));
-        if self.apart.is_empty() {
-            return;
-        }
-        self.apart.sort_unstable_by_key(|&(triangle, _)| triangle);
-        self.found.clear();
-        self.directions.clear();
-        crossing.for_each(|(triangle, away)| self.add(triangle, away));
-        self.spread(surface);
-        contacts.retain(|(pair, contact)| {
-            let away = self.directions.get(&pair[i]).filter(|_| is_apart(contact));
-            away.is_none_or(|&away| !opposes(contact.contact.normal, away))
-        });
-    }
-
-    /// Adds a triangle, unless it was found before.
-    fn add(&mut self, triangle: u32, away: DVec3) {
-        if let Entry::Vacant(entry) = self.directions.entry(triangle) {
-            entry.insert(away);
-            self.found.push((triangle, away));
-        }
-    }
-
-    /// Adds the neighbours of all triangles that were found, if these have passed.
-    fn spread(&mut self, surface: &impl Facets) {
-        let mut next = 0;
-        while let Some(&(triangle, away)) = self.found.get(next) {
-            next += 1;
-            for half_edge in (0..3).filter_map(|edge| surface.twin(3 * triangle + edge)) {
-                if self.has_passed(half_edge / 3, away) {
-                    self.add(half_edge / 3, away);
-                }
-            }
-        }
-    }
-
-    /// Returns true if a contact of a triangle pushes against a direction.
-    fn has_passed(&self, triangle: u32, away: DVec3) -> bool {
-        let first = self.apart.partition_point(|&(other, _)| other < triangle);
-        let mut own = self.apart[first..].iter().take_while(|&&(other, _)| other == triangle);
-        own.any(|&(_, normal)| opposes(normal, away))
-    }
-}
-
-fn is_apart(contact: &TriangleSurfaceContact) -> bool {
-    contact.source == ContactSource::Triangles
-}
-
-fn opposes(normal: DVec3, away: DVec3) -> bool {
-    normal.dot(away) < -SAME_SIDE
 }
 
 /// Part of a body that may stick out of a room that holds it, in half heights of the body. If faces lead in, the other part is
@@ -437,20 +312,18 @@ impl<'a> HeldMesh<'a> {
 
     /// Returns the contact that leads the held mesh out of a solid, by the shortest way from its middle.
     ///
-    /// Tests one vertex, unless the middle is known to be in both: a mesh that pierces the surface has contacts.
-    pub(super) fn push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
+    /// Tests one vertex: a mesh that pierces the surface has contacts.
+    pub(super) fn push_out(&self, test: &mut InsideTest) -> Option<TriangleHit> {
         let Self { pose, held, holder, surface, outer, room } = *self;
         let vertex = self.in_holder(held.corners(0)[0]);
-        if !is_in_both {
-            let known = test.known(held.ball(), self.placement());
-            if room != Room::No || known == Some(Room::No) {
-                return None;
-            }
-            self.exit(vertex, test)?;
-            if surface.kind() == SurfaceKind::Sheet {
-                *test = InsideTest::NoSolid;
-                return None;
-            }
+        let known = test.known(held.ball(), self.placement());
+        if room != Room::No || known == Some(Room::No) {
+            return None;
+        }
+        self.exit(vertex, test)?;
+        if surface.kind() == SurfaceKind::Sheet {
+            *test = InsideTest::NoSolid;
+            return None;
         }
         let middle = self.in_holder(held.ball().centre);
         let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {

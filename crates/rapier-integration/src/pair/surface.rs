@@ -18,7 +18,7 @@ use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleCon
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side};
 
-use super::islands::{Crossing, IslandPlace, SheetSide, Support};
+use super::islands::{Crossing, SheetSide, Support};
 use super::shapes::{
     ContactSource, DISTANT, LIP, NEAR_NORMAL, OverSheet, ShapeFacets, TriangleShapes,
     TriangleSurfaceContact,
@@ -263,7 +263,8 @@ impl<'a> SurfaceFilter<'a> {
             outward,
             is_sheet: [0, 1].map(|i| outward[i] != Some(self.shapes[i].outward())),
             sheet,
-            place: IslandPlace::default(),
+            is_rejected: false,
+            island: 0,
         };
         let source = ContactSource::OutwardAxis;
         Verdict::Crossing(crossing, good.map(|contact| TriangleSurfaceContact { contact, source }))
@@ -314,8 +315,7 @@ impl<'a> SurfaceFilter<'a> {
         (normal, self.shapes.leaning(over, sheet, self.pair[sheet]))
     }
 
-    /// Second pass: returns a contact for an island whose `support` is not enough. It may be deeper than its points:
-    /// a flat side goes on beyond a triangle.
+    /// Second pass: returns a contact for an island whose `support` is not enough.
     pub(super) fn supporting_contact(
         &self,
         crossing: &Crossing,
@@ -331,18 +331,6 @@ impl<'a> SurfaceFilter<'a> {
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {
             return None;
         }
-        // Between two rows of triangles of a flat side neither has an overlap as deep as that side.
-        let most = (contact.distance + crossing.greatest).max(0.0);
-        let side_beyond = |i: usize, direction: DVec3| {
-            let direction = self.in_frame(i, direction);
-            self.surfaces[i].side_beyond(self.pair[i], direction, most)
-        };
-        let beyond = if support.is_missing() {
-            side_beyond(0, contact.normal) + side_beyond(1, -contact.normal)
-        } else {
-            0.0
-        };
-        let contact = TriangleContact { distance: contact.distance - beyond.min(most), ..contact };
         Some(TriangleSurfaceContact { contact, source: ContactSource::OutwardAxis })
     }
 

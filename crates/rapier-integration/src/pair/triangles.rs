@@ -36,7 +36,7 @@ use super::shapes::{
     ContactSource, FieldShape, Hint, MeshShape, NEARLY_TOUCHING, Room, TriangleHit, TriangleShape,
     TriangleShapes, TriangleSurfaceContact, contact_of, filter_distance,
 };
-use super::sides::{HeldMesh, InsideTest, PassedTriangles};
+use super::sides::{HeldMesh, InsideTest};
 use super::surface::{SurfaceFilter, Verdict};
 use super::write::{constrained_normal, write_triangle_points};
 use crate::SbbkConfig;
@@ -207,7 +207,6 @@ pub(crate) struct TriangleScratch {
     contours: ContourMemory,
     /// Normals of contacts.
     directions: Vec<DVec3>,
-    passed: PassedTriangles,
 }
 
 /// Result of the first pass over candidates, and memory for it.
@@ -293,7 +292,7 @@ impl PairQuery for TriangleQuery<'_> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { first, contours, directions, passed, .. } = scratch;
+        let TriangleScratch { first, contours, directions, .. } = scratch;
         first.clear();
         std::mem::swap(&mut first.contacts, contacts);
         let pass = |chunk: &mut [_], first: &mut FirstPass| {
@@ -307,8 +306,7 @@ impl PairQuery for TriangleQuery<'_> {
             return self.hold(candidates, limits, contacts);
         }
         let lead_one_way = meet_borders(upright, contacts);
-        let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
-        if self.finish_first_pass(islands, separation) {
+        if self.finish_first_pass(islands) {
             self.second_pass(islands, contours, clipped, contacts);
         }
         self.drop_lifted(islands.one_ways(), contacts);
@@ -318,12 +316,10 @@ impl PairQuery for TriangleQuery<'_> {
             self.shapes.reject_aside(directions, islands, contacts);
         }
         self.part_crossing(islands, contacts);
-        self.shapes.reject_passed(islands, passed, contacts);
         self.shapes.reject_through(&islands.crossings, contacts);
         if contacts.is_empty() {
-            let is_in_both = islands.separation.is_some();
             let held = HeldMesh::of(&self.shapes);
-            contacts.extend(held.and_then(|held| held.push_out(is_in_both, self.inside)));
+            contacts.extend(held.and_then(|held| held.push_out(self.inside)));
         }
         if contacts.is_empty() {
             contacts.extend(self.of_overlaps(islands));

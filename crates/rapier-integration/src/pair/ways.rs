@@ -25,8 +25,8 @@ pub(super) const SAME_SIDE: f64 = 0.5;
 /// many others cross takes longer; lower: directions that push against each other are confused.
 pub(super) const SAME_DIRECTION: f64 = 0.99;
 
-/// Directions of reliable contacts that are remembered for a group. Higher: slower where many differ. Lower: second
-/// passes for pairs that a contact separates.
+/// Directions of reliable contacts that are remembered for a group. Higher: slower where many differ. Lower: ways out
+/// are missed.
 const MOST_DIRECTIONS: usize = 16;
 
 /// Directions with the greatest depths of their contacts.

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
-use super::facets::{Facets, Wedge, half_edge, next, previous, visit_ring};
+use super::facets::{Facets, Wedge, half_edge, previous, visit_ring};
 use super::sides::Side;
 use super::slopes::{
     Bend, FLAT, Heights, LONG, PlaceMemo, RISE, RISE_TO_FACE, Signs, Slopes, angle,
@@ -379,38 +379,6 @@ impl<F: Facets> Around<F> {
             most = most.saturating_sub(1);
             if most == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-    }
-
-    /// Length by which the flat side of a triangle continues beyond it in a unit direction, from
-    /// vertex to vertex, up to `most`. 0 if the direction is not parallel to the side.
-    pub fn side_beyond(&self, triangle: u32, direction: DVec3, most: f64) -> f64 {
-        let normal = self.normal(triangle);
-        if normal.dot(direction).abs() > FLAT * normal.length() {
-            return 0.0;
-        }
-        let height = |half_edge: &u32| self.corner(*half_edge, 0).dot(direction);
-        let corners = 3 * triangle..3 * triangle + 3;
-        let highest = corners.max_by(|a, b| height(a).total_cmp(&height(b)));
-        let (mut at, mut beyond) = (highest.unwrap_or_default(), 0.0);
-        while beyond < most {
-            let (mut rise, mut to) = (0.0, at);
-            let vertex = Feature::Vertex((at % 3) as u8);
-            self.visit(at / 3, vertex, |Wedge { half_edge, edges: [u, v], .. }| {
-                for (edge, end) in [(u, next(half_edge)), (v, previous(half_edge))] {
-                    let (height, length) = (edge.dot(direction), edge.length());
-                    let is_flat = edge.dot(normal).abs() <= FLAT * length * normal.length();
-                    if is_flat && height > rise && height > RISE * length {
-                        (rise, to) = (height, end);
-                    }
-                }
-                ControlFlow::Continue(())
-            });
-            if to == at {
-                break;
-            }
-            (at, beyond) = (to, beyond + rise);
-        }
-        beyond.min(most)
     }
 
     /// Height of a direction along the area vector of a triangle; true if the direction is nearly

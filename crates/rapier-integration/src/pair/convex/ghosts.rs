@@ -15,12 +15,9 @@
 //! The tip of a crossing shape may be less deep behind both triangles at an edge than in the solid. This is so if a
 //! triangle at the edge extends beyond the contact along its normal. The contact then takes the normal of a face nearby that the shape crosses, if there is one.
 //!
-//! A thin shape that cuts a sharp edge has its end far from the planes of both faces. Two less deep ways
-//! part it from the triangle as well, and the least deep one counts:
-//!
-//! * Along another contact with its own normal, if the triangle does not extend beyond that contact.
-//! * Out of the wedge behind the planes of the triangle and another one, if the mesh is a solid. A
-//!   sheet has no body behind its triangles.
+//! A thin shape that cuts a sharp edge has its end far from the planes of both faces. If the mesh is a solid, the way out of the
+//! wedge behind the planes of the triangle and another one may be less deep, and counts then. A sheet has no body behind its
+//! triangles.
 //!
 //! A shape that stands at the foot of a wall has sunk into the floor, and is nearest to the edge between both.
 //! The wall then keeps a contact with its own normal, if the shape touches the wall once the floor has lifted it.
@@ -367,11 +364,6 @@ impl GhostContacts {
             self.corners[one as usize].passed = Some((contact, is_passed));
         }
         is_passed
-    }
-
-    /// Returns true if a contact keeps its own normal.
-    pub(super) fn is_true(&self, contact: u32) -> bool {
-        self.sources[contact as usize] == contact && self.on_faces.binary_search(&contact).is_err()
     }
 
     /// Lists a contact and then all others whose triangles share a corner with its triangle.

@@ -172,6 +172,7 @@ impl ConvexQuery<'_> {
                 let of = contacts[other as usize].0;
                 self.with_pair(of, scratch, |pair| pair.face_contact_for(&own.contact))?
             });
+            let Some(face) = face.map(|face| own.with_normal_of(&face)) else { continue };
             if contacts.len() <= LINEAR_SEARCH {
                 // Thin shapes cross few triangles, which may be far from each other.
                 let is_of_part =
@@ -179,46 +180,35 @@ impl ConvexQuery<'_> {
                 let all = 0..contacts.len() as u32;
                 ghosts.nearby.extend(all.filter(is_of_part).filter(is_crossing));
             }
-            let face = face.map(|face| own.with_normal_of(&face));
-            if let Some(least) = self.least_deep(ghosts, contacts, passed, face, scratch) {
-                contacts[passed as usize].1 = least;
-            }
+            contacts[passed as usize].1 = self.least_deep(ghosts, contacts, passed, face, scratch);
         }
     }
 
-    /// Returns the least deep way out of a triangle. Candidates are `face`, other contacts that part the triangle, too, and
-    /// ways out of wedges of a solid.
+    /// Returns the least deep way out of a triangle. Candidates are `face` and ways out of wedges of a solid.
     fn least_deep(
         &self,
         ghosts: &GhostContacts,
         contacts: &[([u32; 2], PartContact)],
         passed: u32,
-        face: Option<PartContact>,
+        face: PartContact,
         scratch: &mut ConvexScratch,
-    ) -> Option<PartContact> {
+    ) -> PartContact {
         let (of, own) = contacts[passed as usize];
         let [_, part] = self.pair.mesh_place.swap(of);
         let hull = self.part_data.hull(part);
         let is_solid =
             || self.surface.as_ref().is_some_and(|known| known.kind() == SurfaceKind::Solid);
         let least = self.with_pair(of, scratch, |pair| {
-            let ways = ghosts.nearby.iter().flat_map(|&other| {
-                let (of_other, PartContact { contact, .. }) = contacts[other as usize];
-                let [triangle, _] = self.pair.mesh_place.swap(of_other);
-                let is_parting = ghosts.is_true(other) && !pair.extends_beyond(&contact);
-                let parting = is_parting.then(|| own.with_normal_of(&contact));
-                // A wedge leads against the contact where all faces do.
-                let wedge = face.and_then(|_| {
-                    pair.contact_of_wedge(self.pair.mesh.corners(triangle), hull)
-                        .filter(|_| is_solid())
-                });
-                [parting, wedge.map(|contact| PartContact { contact, ..own })]
-            });
+            let wedge = |&other: &u32| {
+                let [triangle, _] = self.pair.mesh_place.swap(contacts[other as usize].0);
+                let contact = pair.contact_of_wedge(self.pair.mesh.corners(triangle), hull)?;
+                is_solid().then_some(PartContact { contact, ..own })
+            };
             let is_deep = |way: &PartContact| way.contact.distance < 0.0;
             let less = |least: PartContact, way: PartContact| {
                 if least.contact.distance < way.contact.distance { way } else { least }
             };
-            face.into_iter().chain(ways.flatten().filter(is_deep)).reduce(less)
+            ghosts.nearby.iter().filter_map(wedge).filter(is_deep).fold(face, less)
         });
         least.unwrap_or(face)
     }

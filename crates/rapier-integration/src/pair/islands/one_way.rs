@@ -1,16 +1,12 @@
-//! Ways that part all pairs of an island, or a pair that knows only longer ones.
+//! Ways that part all pairs of an island.
 //!
-//! Two crossing triangles know the ways across their own faces and edges. Another contact of their island may part them
-//! by a shorter way, if both surfaces end where the overlap along that way does.
+//! Two crossing triangles know the ways across their own faces and edges. A contact of another pair may part them as well, if both
+//! surfaces end where the overlap along its way does.
 
 use glamx::DVec3;
 
 use super::{Crossing, OverlapIslands};
 use crate::pair::ways::{SAME_DIRECTION, SAME_SIDE, add_direction};
-
-/// Ratio of depths from which a shorter way out of an island is looked for. Higher: edges that cross push each other aside. Lower:
-/// more time for bodies in each other.
-const MUCH_LONGER: f64 = 2.0;
 
 impl OverlapIslands {
     /// Returns true if the normals of all contacts are within an angle of the first one.
@@ -37,47 +33,23 @@ impl OverlapIslands {
         let Self { crossings, ways, one_ways, .. } = self;
         ways.clear();
         for crossing in crossings.iter().filter(|crossing| crossing.is_fine()) {
-            ways.add(crossing.place.island, crossing.normal, crossing.depth);
+            ways.add(crossing.island, crossing.normal, crossing.depth);
         }
-        for &Crossing { pair, normal, place, .. } in &*crossings {
+        for &Crossing { pair, normal, island, .. } in &*crossings {
             let parts = |way: DVec3, depth: f64| parts(pair, way, depth);
-            ways.keep_parting(place.island, normal, small, parts);
+            ways.keep_parting(island, normal, small, parts);
         }
-        for (index, Crossing { normal, place, .. }) in crossings.iter_mut().enumerate() {
-            let Some((way, depth)) = ways.least(place.island) else { continue };
-            if place.island == index {
+        for (index, crossing) in crossings.iter_mut().enumerate() {
+            let Some((way, depth)) = ways.least(crossing.island) else { continue };
+            if crossing.island == index {
                 add_direction(one_ways, way, depth);
             }
-            place.is_rejected |= way.dot(*normal) < SAME_SIDE;
+            crossing.is_rejected |= way.dot(crossing.normal) < SAME_SIDE;
         }
     }
 
     /// Returns the ways that part all pairs of an island at a small depth, and the depths.
     pub(in crate::pair) fn one_ways(&self) -> &[(DVec3, f64)] {
         &self.one_ways
-    }
-
-    /// Rejects contacts of pairs that another contact of their island parts by a shorter way.
-    pub(super) fn reject_longer(&mut self, parts: impl Fn([u32; 2], DVec3, f64) -> bool) {
-        let Self { crossings, ways, by_depth, .. } = self;
-        ways.clear();
-        by_depth.clear();
-        by_depth.extend((0..crossings.len()).filter(|&i| crossings[i].is_fine()));
-        by_depth.sort_unstable_by(|a, b| {
-            crossings[*a].depth.total_cmp(&crossings[*b].depth).then(a.cmp(b))
-        });
-        for &i in &*by_depth {
-            let Crossing { pair, normal, depth, place, .. } = crossings[i];
-            let is_shorter = |(way, length): &(DVec3, f64)| {
-                depth > MUCH_LONGER * length
-                    && way.dot(normal) < SAME_SIDE
-                    && parts(pair, *way, *length)
-            };
-            if ways.of(place.island).iter().any(is_shorter) {
-                crossings[i].place.is_rejected = true;
-            } else {
-                ways.add(place.island, normal, depth);
-            }
-        }
     }
 }

@@ -5,27 +5,18 @@ use sbbk_core::contact::ManifoldPoints;
 
 use super::TriangleQuery;
 use crate::pair::deep::{self, ContourMemory};
-use crate::pair::islands::{Overlap, OverlapIslands};
+use crate::pair::islands::OverlapIslands;
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
 use crate::pair::ways::{SAME_DIRECTION, SMALL, greatest_overlap};
 
-/// Least cosine between a face and a direction that leads out of it rather than along it. Higher: deep boxes get contacts with the
-/// sides; lower: bodies in sockets lose contacts.
-const OUT_OF_FACE: f64 = 0.7;
-
 impl TriangleQuery<'_> {
     /// Ends the first pass. Returns true if a second pass is needed.
-    pub(super) fn finish_first_pass(
-        &self,
-        islands: &mut OverlapIslands,
-        separation: Option<DVec3>,
-    ) -> bool {
+    pub(super) fn finish_first_pass(&self, islands: &mut OverlapIslands) -> bool {
         let small = SMALL * self.shapes.filter_distance;
-        let overlap = |pair: [u32; 2], way: DVec3| self.overlap(pair, way);
         let parts = |pair: [u32; 2], way: DVec3, length: f64| self.parts(pair, way, length);
-        islands.finish_first_pass(separation, small, overlap, parts)
+        islands.finish_first_pass(small, parts)
     }
 
     /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
@@ -69,24 +60,16 @@ impl TriangleQuery<'_> {
     fn parts(&self, pair: [u32; 2], way: DVec3, length: f64) -> bool {
         let most = greatest_overlap(length, self.shapes.filter_unit());
         let ends = |filter: &SurfaceFilter<'_>| filter.ends_along(way);
-        self.overlap(pair, way).length.abs() <= most
+        self.overlap(pair, way).is_some_and(|length| length.abs() <= most)
             && self.shapes.with_filter(pair, ends) == Some(true)
     }
 
     /// Returns the overlap of two triangles along a direction in which triangle 2 leaves.
-    fn overlap(&self, pair: [u32; 2], way: DVec3) -> Overlap {
-        let Some(local) = self.shapes.local(pair) else {
-            return Overlap { length: 0.0, leads_out: false };
-        };
-        let heights = local.corners.map(|corners| corners.map(|corner| corner.dot(way)));
+    fn overlap(&self, pair: [u32; 2], way: DVec3) -> Option<f64> {
+        let heights = self.shapes.local(pair)?.corners.map(|of| of.map(|corner| corner.dot(way)));
         let highest = heights[0].into_iter().fold(f64::NEG_INFINITY, f64::max);
         let lowest = heights[1].into_iter().fold(f64::INFINITY, f64::min);
-        let leads_out = |[a, b, c]: [DVec3; 3]| {
-            let area = (b - a).cross(c - a);
-            area.dot(way).abs() > OUT_OF_FACE * area.length()
-        };
-        let leads_out = local.corners.into_iter().any(leads_out);
-        Overlap { length: highest - lowest, leads_out }
+        Some(highest - lowest)
     }
 
     /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too few.

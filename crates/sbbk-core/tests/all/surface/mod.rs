@@ -368,29 +368,3 @@ fn a_leaning_corner_is_a_minimum_for_faces_first() {
         );
     }
 }
-
-#[test]
-fn flat_sides_continue_to_their_end() {
-    const CELLS: u32 = 5;
-    let mut mesh = Soup { vertices: Vec::new(), triangles: Vec::new() };
-    for i in 0..=CELLS {
-        // The last row leans by a degree.
-        let lean = if i == CELLS { 0.017 } else { 0.0 };
-        mesh.vertices.extend((0..=CELLS).map(|j| Vec3::new(j as f32, i as f32, lean)));
-    }
-    for (i, j) in (0..CELLS * CELLS).map(|cell| (cell / CELLS, cell % CELLS)) {
-        let [a, b] = [i, i + 1].map(|row| row * (CELLS + 1) + j);
-        mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
-    }
-    let surface = mesh.surface();
-    let around = Around { facets: mesh.facets(&surface), side: Side::Sheet };
-    for triangle in 0..2 * CELLS * (CELLS - 1) {
-        let top = 1 + triangle / (2 * CELLS);
-        let beyond = |direction, most| around.side_beyond(triangle, direction, most);
-        let expected = f64::from(CELLS - 1 - top);
-        assert_eq!(beyond(DVec3::Y, 100.0), expected, "{triangle}");
-        assert_eq!(beyond(DVec3::Y, 1.5), expected.min(1.5));
-        assert_eq!(beyond(-DVec3::Y, 100.0), f64::from(top - 1));
-        assert_eq!(beyond(DVec3::new(0.0, 1.0, 0.01).normalize(), 100.0), 0.0);
-    }
-}
