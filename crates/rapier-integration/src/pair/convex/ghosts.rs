@@ -16,8 +16,7 @@
 //! triangle at the edge extends beyond the contact along its normal. The contact then takes the normal of a face nearby that the shape crosses, if there is one.
 //!
 //! A thin shape that cuts a sharp edge has its end far from the planes of both faces. If the mesh is a solid, the way out of the
-//! wedge behind the planes of the triangle and another one may be less deep, and counts then. A sheet has no body behind its
-//! triangles.
+//! wedge behind both planes counts where it is less deep. A sheet has no body behind its triangles.
 //!
 //! A shape that stands at the foot of a wall has sunk into the floor, and is nearest to the edge between both.
 //! The wall then keeps a contact with its own normal, if the shape touches the wall once the floor has lifted it.
