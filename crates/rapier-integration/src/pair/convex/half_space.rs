@@ -1,6 +1,8 @@
 //! Contacts of a mesh and a half-space. They have the normal of the half-space, so none is a ghost. Patches take each vertex
 //! once, and the triangles that share it do not repeat it.
 
+use glamx::DVec3;
+use parry3d::math::Real;
 use parry3d::query::TrackedContact;
 use parry3d::shape::{HalfSpace, PackedFeatureId};
 use sbbk_core::contact::Feature;
@@ -40,17 +42,16 @@ impl ConvexQuery<'_> {
             if lowest.is_none() || distance > prediction {
                 continue;
             }
-            for ((i, vertex), corner) in (0..).zip(vertices(of)).zip(corners) {
-                let distance = corner.dot(normal);
-                if distance <= prediction
-                    && !std::mem::replace(&mut is_known[vertex as usize], true)
-                {
-                    let on_shape = corner - normal * distance;
-                    let contact =
-                        ConvexContact { distance, normal: -normal, on_triangle: corner, on_shape };
-                    let (feature, source) = (Feature::Vertex(i), NormalSource::Own);
-                    contacts.push((of, PartContact { contact, feature, source }));
+            let vertices = vertices(of);
+            for (i, corner, distance) in near_corners(&corners, normal, prediction) {
+                if std::mem::replace(&mut is_known[vertices[usize::from(i)] as usize], true) {
+                    continue;
                 }
+                let on_shape = corner - normal * distance;
+                let contact =
+                    ConvexContact { distance, normal: -normal, on_triangle: corner, on_shape };
+                let (feature, source) = (Feature::Vertex(i), NormalSource::Own);
+                contacts.push((of, PartContact { contact, feature, source }));
             }
         }
         for vertex in contacts.iter().flat_map(|(of, _)| vertices(*of)) {
@@ -72,20 +73,29 @@ impl TrianglePartPair<'_> {
         let normal = half_space.normal.as_dvec3();
         let corners = self.placed.in_part(self.corners);
         let is_all = self.pair.vertices_of().is_none();
-        for (i, (corner, vertex)) in (0..).zip(corners.iter().zip(self.corners)) {
-            let distance = corner.dot(normal);
-            let is_of = is_all || *feature == Feature::Vertex(i);
-            if is_of && distance <= f64::from(pose.prediction) {
+        for (i, corner, distance) in near_corners(&corners, normal, pose.prediction.into()) {
+            if is_all || *feature == Feature::Vertex(i) {
                 out.points.push(TrackedContact::flipped(
                     (corner - normal * distance).as_vec3(),
-                    vertex,
+                    self.corners[usize::from(i)],
                     PackedFeatureId::face(0),
                     PackedFeatureId::vertex(i.into()),
-                    distance as f32,
+                    distance as Real,
                     !mesh_place.is_second(),
                 ));
             }
         }
         out.normals = self.normals(contact);
     }
+}
+
+/// Returns the corners of a triangle within a distance of a half-space, with their numbers and distances.
+fn near_corners(
+    corners: &[DVec3; 3],
+    normal: DVec3,
+    within: f64,
+) -> impl Iterator<Item = (u8, DVec3, f64)> {
+    let distances = corners.iter().map(move |&corner| (corner, corner.dot(normal)));
+    let numbered = (0..).zip(distances).map(|(i, (corner, distance))| (i, corner, distance));
+    numbered.filter(move |(.., distance)| *distance <= within)
 }
