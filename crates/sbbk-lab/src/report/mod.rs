@@ -41,7 +41,7 @@ impl fmt::Display for Results {
         writeln!(f, "VERDICT: {}\n\n{}", self.verdict, self.environment)?;
         let csv = self.csv();
         tables(self.study, &csv).iter().try_for_each(|table| write!(f, "\n{table}"))?;
-        write!(f, "\n{}", tables::picture(self.study, &csv))?;
+        write!(f, "{}", tables::picture(self.study, &csv))?;
         let mut notes = self.notes.iter();
         notes.try_for_each(|note| write!(f, "\n{note}"))
     }
