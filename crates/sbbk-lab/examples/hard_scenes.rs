@@ -55,6 +55,9 @@ struct RandomArguments {
     /// Rapier's length unit in random scenes; the size of the bodies if not given
     #[arg(long)]
     unit: Option<f32>,
+    /// Iterations of Rapier's solver in random scenes; its default if not given
+    #[arg(long)]
+    iterations: Option<usize>,
 }
 
 impl RandomArguments {
@@ -68,7 +71,7 @@ impl RandomArguments {
         let numbers = self.number.map_or(0..count, |number| number..number + 1);
         let plan = RandomPlan::new(numbers, self.seed, settings);
         let families = if self.family.is_empty() { plan.families } else { self.family };
-        RandomPlan { families, unit: self.unit, ..plan }
+        RandomPlan { families, unit: self.unit, iterations: self.iterations, ..plan }
     }
 }
 
@@ -81,7 +84,8 @@ fn main() -> Outcome {
     if settings.columns.is_empty() {
         let all = || Column::value_variants().to_vec();
         let usual = || Column::USUAL.to_vec();
-        settings.columns = if random.are_given() { usual() } else { study.plan(all, usual) };
+        let with_control = || [usual(), vec![Column::Control]].concat();
+        settings.columns = if random.are_given() { with_control() } else { study.plan(all, usual) };
     }
     if random.are_given() {
         let plan = random.plan(&study, settings);

@@ -166,7 +166,7 @@ fn advice_fits_the_mesh() {
         assert!(advice.speeds().iter().all(|speed| *speed > 0.0), "{text}");
         assert!(!text.contains("FIX_INTERNAL_EDGES") && !text.contains("NaN"), "{text}");
         assert_eq!(text.contains("prepare_shape"), mesh.triangle_count() > 8192, "{text}");
-        assert_eq!(text.contains("bodies inside it are pushed out"), *kind == SurfaceKind::Solid);
+        assert_eq!(text.contains("pushes out mesh bodies"), *kind == SurfaceKind::Solid);
         assert_eq!(text.contains("inwards"), *kind == SurfaceKind::InsideOut, "{text}");
         assert_eq!(text.contains("length_unit = 0.014"), mesh.name == "torus" && advice.size < 0.1);
         for [stock, sbbk] in &advice.rows {

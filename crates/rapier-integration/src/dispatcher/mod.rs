@@ -103,7 +103,7 @@ impl SbbkDispatcher {
     }
 
     /// Returns what this mesh is taken for. A deformable mesh is a sheet. Analyses the mesh if no
-    /// query has done so, in up to 10 ms.
+    /// query has done so, in up to 50 ms.
     pub fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
         let Some(view) = self.store.view(mesh) else { return SurfaceKind::Sheet };
         let mut known = PairMesh::default();

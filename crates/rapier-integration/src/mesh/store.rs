@@ -304,7 +304,7 @@ pub(super) fn is_small(triangle_count: usize) -> bool {
     triangle_count <= BuildBudget::LIMIT as usize
 }
 
-/// True if an unregistered mesh is analysed as a whole, in up to 10 ms. The triangles of a larger one
+/// True if an unregistered mesh is analysed as a whole, in up to 50 ms. The triangles of a larger one
 /// are analysed where something touches.
 pub(super) fn is_analysed(triangle_count: usize) -> bool {
     triangle_count <= PAIRED

@@ -197,7 +197,9 @@ impl Advice {
             mesh.push("call `prepare_shape` at load time".into());
         }
         if self.kind == SurfaceKind::InsideOut {
-            mesh.push("turn its triangles, their normals point inwards".into());
+            mesh.push(
+                "turn its triangles unless it is a room, as its normals point inwards".into(),
+            );
         }
         let mut dynamic = mesh.clone();
         let [small, large] = USUAL_SIZES;
@@ -246,7 +248,7 @@ impl fmt::Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = match self.kind {
             SurfaceKind::Solid => {
-                "a solid: bodies inside it are pushed out; register a room as `SurfaceKind::Sheet`"
+                "a solid: pushes out mesh bodies that sink in, and is a room for bodies inside"
             }
             SurfaceKind::Sheet => "a sheet: bodies touch it from both sides",
             SurfaceKind::InsideOut => "inside out: its normals point inwards",

@@ -21,6 +21,8 @@ pub(super) struct Draw {
     pub size: f32,
     /// Rapier's length unit, in metres.
     pub unit: f32,
+    /// Iterations of Rapier's solver; `None` for its default.
+    pub iterations: Option<usize>,
     /// Gravity, in sizes/s².
     pub gravity: f32,
     /// Time step, in seconds.
@@ -71,8 +73,19 @@ impl Draw {
         let dt = log(fine.max(1.0 / 240.0), coarse.min(1.0 / 30.0));
         let is_reversed = random.rand_range(0..2) == 1;
         let about = vec![format!("size {size:.2}, {gravity:.1}/s², {:.0} Hz", 1.0 / dt)];
-        let (unit, is_sunk, has_control) = (size, false, true);
-        Self { random, size, unit, gravity, dt, is_reversed, is_sunk, has_control, about }
+        let (unit, iterations, is_sunk, has_control) = (size, None, false, true);
+        Self {
+            random,
+            size,
+            unit,
+            iterations,
+            gravity,
+            dt,
+            is_reversed,
+            is_sunk,
+            has_control,
+            about,
+        }
     }
 
     pub fn within(&mut self, low: f32, high: f32) -> f32 {

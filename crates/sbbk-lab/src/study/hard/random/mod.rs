@@ -72,20 +72,24 @@ pub struct RandomPlan {
     pub seed: u64,
     /// Rapier's length unit; `None` for the size of the bodies.
     pub unit: Option<f32>,
+    /// Iterations of Rapier's solver; `None` for its default. Chains and gears keep theirs.
+    pub iterations: Option<usize>,
     pub settings: Settings,
 }
 
 impl RandomPlan {
     /// Scenes of all families.
     pub fn new(numbers: Range<u32>, seed: u64, settings: Settings) -> Self {
-        Self { families: Family::value_variants().to_vec(), numbers, seed, unit: None, settings }
+        let families = Family::value_variants().to_vec();
+        Self { families, numbers, seed, unit: None, iterations: None, settings }
     }
 
     fn trial(&self, family: Family, number: u32) -> Trial {
-        let (seed, unit) = (self.seed, self.unit);
+        let Self { seed, unit, iterations, .. } = *self;
         let run = move |kit: &Kit| {
             let mut draw = Draw::new(family, seed, number);
             draw.unit = unit.unwrap_or(draw.size);
+            draw.iterations = iterations;
             let figures = family.run(&mut draw, kit);
             // Some parts have no convex shape.
             let is_run = kit.column != Column::Control || draw.has_control;
@@ -118,34 +122,49 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> io::Result<Results> {
     if !notes.is_empty() {
         let seed = plan.seed;
         let unit = plan.unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
-        notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{unit} --verbose"));
+        let iterations = plan.iterations.map(|count| format!(" --iterations {count}"));
+        let set = unit + &iterations.unwrap_or_default();
+        notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{set} --verbose"));
     }
     Ok(Results { verdict: verdict(plan, &rows), notes, ..Results::new("random_scenes", rows) })
 }
 
-/// Scenes of a family that hold in a column, and those that SBBK breaks although stock holds them, with
-/// the flag or without.
+/// Counts of a family in a column: scenes, scenes that hold, and failures of SBBK. `lost` counts the failures that stock
+/// holds, with the flag or without. `shared` counts the failures in which the control fails, too.
 fn counted(family: &str, column: Column, runs: &[Run]) -> Row {
-    let of = runs.iter().filter(|run| run.group == family && run.column == column);
-    let held = of.clone().filter(|run| run.wrong().is_none()).count();
+    let of: Vec<&Run> =
+        runs.iter().filter(|run| run.group == family && run.column == column).collect();
+    let held = of.iter().filter(|run| run.wrong().is_none()).count();
+    let is_failed = |run: &&&Run| column == Column::Sbbk && run.wrong().is_some();
     let is_stock = |column: &Column| matches!(column, Column::Stock | Column::StockFlag);
-    let is_lost = |run: &&Run| {
-        let is_broken = column == Column::Sbbk && run.wrong().is_some();
-        is_broken && run.held_by(runs).iter().any(is_stock)
-    };
-    let lost = of.clone().filter(is_lost).count();
+    let failed = of.iter().filter(is_failed);
+    let lost = failed.clone().filter(|run| run.held_by(runs).iter().any(is_stock)).count();
+    let shared = failed.filter(|run| {
+        let is_control = |other: &Run| other.column == Column::Control && other.scene == run.scene;
+        runs.iter().any(|other| is_control(other) && other.wrong().is_some())
+    });
     let row = Row::new("random scenes", column).key("family", family);
-    row.with("scenes", of.count()).with("held", held).with("lost", lost)
+    let row = row.with("scenes", of.len()).with("held", held).with("lost", lost);
+    row.with("shared", shared.count())
 }
 
 fn verdict(plan: &RandomPlan, rows: &[Row]) -> String {
     let sum = |column: &Column, path: &str| -> u64 {
         rows.iter().filter(|row| row.is("backend", column)).map(|row| row.count(path)).sum()
     };
-    let columns = plan.settings.columns.iter();
+    let columns = plan.settings.columns.iter().filter(|column| **column != Column::Control);
     let held = columns.map(|column| format!("{column} {}", sum(column, "held")));
     let held = held.collect::<Vec<_>>().join(", ");
     let scenes = plan.numbers.len() * plan.families.len();
-    let lost = sum(&Column::Sbbk, "lost");
-    format!("of {scenes} random scenes hold: {held}; stock or flag hold {lost} that sbbk breaks")
+    let [lost, shared] = ["lost", "shared"].map(|path| sum(&Column::Sbbk, path));
+    let control = match sum(&Column::Control, "scenes") {
+        0 => String::new(),
+        of => format!(
+            "; rapier's convex shapes hold {} of {of}, and break {shared} that sbbk breaks, too",
+            sum(&Column::Control, "held")
+        ),
+    };
+    format!(
+        "of {scenes} random scenes hold: {held}; stock or flag hold {lost} that sbbk breaks{control}"
+    )
 }

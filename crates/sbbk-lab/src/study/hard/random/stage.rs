@@ -66,8 +66,10 @@ impl<'a> Stage<'a> {
         let size = draw.size;
         let mut world = kit.world();
         world.gravity = -size * draw.gravity * Vec3::Y;
-        world.integration_parameters.length_unit = draw.unit;
-        world.integration_parameters.dt = draw.dt;
+        let parameters = &mut world.integration_parameters;
+        (parameters.length_unit, parameters.dt) = (draw.unit, draw.dt);
+        parameters.num_solver_iterations =
+            draw.iterations.unwrap_or(parameters.num_solver_iterations);
         let mut insert = |body: &Body| insert(&mut world, kit, body, size);
         let mut handles: Vec<_> = match draw.is_reversed {
             false => bodies.iter().map(insert).collect(),
