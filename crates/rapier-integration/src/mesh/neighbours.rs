@@ -115,9 +115,7 @@ impl MeshFacets<'_> {
     /// Returns the first triangle of a crowd or a small component. If that triangle is a face, so are all.
     fn first_of_crowd(self, triangle: u32) -> Option<u32> {
         let Twins::All(surface, _) = self.twins else { return None };
-        let corners = self.mesh.indices()[triangle as usize];
-        let corners = corners.map(|corner| self.mesh.vertices()[corner as usize]);
-        let of_hub = surface.crowd(corners);
+        let of_hub = surface.crowd(*self.mesh.triangle(triangle).vertices());
         of_hub.or_else(|| {
             surface.has_small_components().then(|| self.first_of_component(triangle))?
         })
@@ -196,13 +194,13 @@ impl Facets for MeshFacets<'_> {
     }
 
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        let near = BvhNode::leaf(box_between(corners), 0);
+        let near = box_between(corners);
         // Doubles change no result. They are skipped where no search is needed to find them.
         let is_double = |triangle: &u32| match self.twins {
             Twins::All(all, _) => all.is_double(*triangle),
             Twins::Near(_) => sliver(self.mesh, *triangle).is_some(),
         };
-        let near = self.mesh.bvh().leaves(|node| node.intersects(&near));
+        let near = self.mesh.bvh().intersect_aabb(&near);
         let _ = near.filter(|triangle| !is_double(triangle)).try_for_each(visit);
     }
 

@@ -85,8 +85,7 @@ fn is_box_covered(mesh: &TriMesh, aabb: &Aabb) -> bool {
             0 => way.mins[i % 3] -= 2.0 * length,
             _ => way.maxs[i % 3] += 2.0 * length,
         }
-        let way = BvhNode::leaf(way, 0);
-        mesh.bvh().leaves(|node| node.intersects(&way)).next().is_some()
+        mesh.bvh().intersect_aabb(&way).next().is_some()
     })
 }
 
@@ -154,8 +153,7 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
     if !is_number {
         return false;
     }
-    let aabb = BvhNode::leaf(aabb.loosened(grown), 0);
-    mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
+    mesh.bvh().intersect_aabb(&aabb.loosened(grown)).next().is_some()
 }
 
 /// A mesh during one query.

@@ -16,7 +16,6 @@ use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
 use parry3d::math::{Pose, Real};
-use parry3d::partitioning::BvhNode;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
 use sbbk_core::leaf::{LateralCulling, LeafTest};
 use sbbk_core::surface::{Facets, Surface};
@@ -29,7 +28,7 @@ use sbbk_core::tree::{BATCH, LeafBatch, Tree};
 use super::field::Field;
 use super::pose::PairPose;
 use super::query::Candidate;
-use super::shapes::{DISTANT, Hint, MeshShape, NEAR_NORMAL, TriangleShape, TriangleShapes};
+use super::shapes::{DISTANT, Hint, NEAR_NORMAL, TriangleShape, TriangleShapes};
 use crate::mesh::MeshView;
 
 /// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body of one length unit has a
@@ -137,9 +136,7 @@ impl TriangleShapes<'_> {
     /// Returns true if contacts beside a triangle of shape `i`, by [lateral culling](Self::lateral_culling), are no local
     /// minima. False for height fields.
     pub(super) fn bends_little(&self, i: usize, triangle: u32) -> bool {
-        let TriangleShape::Mesh(MeshShape { surface: Some(surface), .. }) = &self[i] else {
-            return false;
-        };
+        let Some(surface) = self[i].surface() else { return false };
         surface.facets().cones(triangle).least_square(false) >= NEAR_NORMAL * NEAR_NORMAL
     }
 
@@ -251,10 +248,7 @@ impl TriangleShapes<'_> {
 
     /// Returns the surfaces that are known by now and have doubles. A descent may leave these out, as they have no contacts.
     fn doubles(&self) -> [Option<&Surface>; 2] {
-        self.shapes.each_ref().map(|shape| match shape {
-            TriangleShape::Mesh(mesh) => mesh.surface.as_ref()?.with_doubles(),
-            TriangleShape::Field(_) => None,
-        })
+        self.shapes.each_ref().map(|shape| shape.surface()?.with_doubles())
     }
 }
 
@@ -262,8 +256,8 @@ impl TriangleShapes<'_> {
 /// in the frame of the mesh.
 fn are_few_of_meshes(meshes: [&MeshView<'_>; 2], poses: [Pose; 2], prediction: Real) -> bool {
     let count = |i: usize, most: usize| {
-        let around = BvhNode::leaf(meshes[1 - i].placed_root(&poses[i], prediction), 0);
-        meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
+        let around = meshes[1 - i].placed_root(&poses[i], prediction);
+        meshes[i].mesh.bvh().intersect_aabb(&around).take(most + 1).count()
     };
     let least = MOST_PAIRS.isqrt();
     match [0, 1].map(|i| count(i, least)) {

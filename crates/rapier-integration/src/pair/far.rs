@@ -16,7 +16,6 @@ use sbbk_core::contact::{Feature, FeaturePair, ManifoldPoints, TriangleContact, 
 use super::borders::is_past_border;
 use super::islands::OverlapIslands;
 use super::query::ContactList;
-use super::shapes::TriangleShape;
 use super::shapes::{NEAR_NORMAL, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 use super::surface::{SurfaceFilter, Verdict};
 
@@ -145,12 +144,12 @@ impl TriangleShapes<'_> {
     /// mesh. Sides that touch may hide them from walks.
     fn find_ahead(&self, found: &mut impl FnMut(TriangleHit)) {
         for i in 0..2 {
-            let TriangleShape::Mesh(mesh) = &self[i] else { continue };
+            let Some(view) = self[i].view() else { continue };
             // Few of its triangles would be near.
             if self[i].size_squared() > MUCH_LARGER * self[1 - i].size_squared() {
                 continue;
             }
-            let (count, signs) = (mesh.view.mesh.indices().len(), self[i].ways_out());
+            let (count, signs) = (view.mesh.indices().len(), self[i].ways_out());
             let looks = AHEAD.min(count);
             let triangles = (0..looks).map(|k| (k * count / looks) as u32);
             for (triangle, &sign) in triangles.flat_map(|t| signs.iter().map(move |s| (t, s))) {

@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 use glamx::DVec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
-use parry3d::partitioning::BvhNode;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::{CompositeShapeRef, Triangle, TrianglePseudoNormals};
@@ -125,17 +124,13 @@ impl TriangleShapes<'_> {
     /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one, if that is more than
     /// `margin`.
     pub(super) fn clearance(&self, margin: Real) -> Option<Real> {
-        let (TriangleShape::Mesh(larger), TriangleShape::Mesh(_)) =
-            (&self[self.larger], &self[1 - self.larger])
-        else {
-            return None;
-        };
+        let [larger, _] = [self[self.larger].view()?, self[1 - self.larger].view()?];
         let Sphere { centre, radius } = self.moving().ball;
         let placed = self.pose.in_other(1 - self.larger, centre);
         let offset = self.pose.pos12.translation.abs().max_element();
-        let size = larger.view.magnitude() + centre.abs().max_element() + radius + offset;
+        let size = larger.magnitude() + centre.abs().max_element() + radius + offset;
         let reach = radius + gamma(64) * size;
-        let clearance = larger.view.distance_beyond(placed, reach + margin)? - reach;
+        let clearance = larger.distance_beyond(placed, reach + margin)? - reach;
         (clearance > margin && clearance.is_finite()).then_some(clearance)
     }
 
@@ -237,7 +232,17 @@ pub(crate) struct FieldShape<'q> {
     pub(super) cone: Option<(u32, Option<TrianglePseudoNormals>)>,
 }
 
-impl TriangleShape<'_> {
+impl<'q> TriangleShape<'q> {
+    /// Returns a mesh; `None` for a height field.
+    pub(super) fn view(&self) -> Option<&'q MeshView<'q>> {
+        if let Self::Mesh(mesh) = self { Some(mesh.view) } else { None }
+    }
+
+    /// Returns the surface of a mesh, for contacts of surfaces.
+    pub(super) fn surface(&self) -> Option<&LazySurface<'q>> {
+        if let Self::Mesh(mesh) = self { mesh.surface.as_ref() } else { None }
+    }
+
     /// Returns the corners of a triangle; `None` if it does not exist.
     #[inline(always)]
     pub(super) fn corners(&self, triangle: u32) -> Option<[Vector; 3]> {
@@ -295,8 +300,7 @@ impl TriangleShape<'_> {
 
     /// Returns true if a triangle of a mesh has a double that is wound the other way.
     pub(super) fn is_two_sided(&self, triangle: u32) -> bool {
-        let Self::Mesh(MeshShape { surface: Some(surface), .. }) = self else { return false };
-        surface.facets().is_two_sided(triangle)
+        self.surface().is_some_and(|surface| surface.facets().is_two_sided(triangle))
     }
 
     /// Returns true if the shape has an inside. Only contacts of surfaces ask for it.
@@ -321,18 +325,13 @@ impl TriangleShape<'_> {
 
     /// Returns a ball around a mesh; an infinite one for a height field.
     pub(super) fn ball(&self) -> Sphere {
-        match self {
-            Self::Mesh(mesh) => mesh.view.ball(),
-            Self::Field(_) => Sphere { centre: Vector::ZERO, radius: Real::INFINITY },
-        }
+        let infinite = Sphere { centre: Vector::ZERO, radius: Real::INFINITY };
+        self.view().map_or(infinite, MeshView::ball)
     }
 
     /// Returns the square of half the diagonal of the box around a mesh. A height field counts as larger than any.
     pub(super) fn size_squared(&self) -> Real {
-        match self {
-            Self::Mesh(mesh) => mesh.view.size_squared(),
-            Self::Field(_) => Real::INFINITY,
-        }
+        self.view().map_or(Real::INFINITY, MeshView::size_squared)
     }
 
     /// Returns the length of a triangle's side, if equal triangles cover the box around the shape.
@@ -348,14 +347,12 @@ impl TriangleShape<'_> {
 
     /// Returns the height of a mesh over the middle of its box along a unit direction; 0 for a height field.
     pub(super) fn height(&self, direction: Vector) -> Real {
-        let Self::Mesh(mesh) = self else { return 0.0 };
-        mesh.view.height(direction, 0.0)
+        self.view().map_or(0.0, |view| view.height(direction, 0.0))
     }
 
     /// Returns the least coordinate along a direction, in the frame of the shape; `None` if not known.
     pub(super) fn lowest(&self, direction: Vector) -> Option<Real> {
-        let Self::Mesh(mesh) = self else { return None };
-        Some(mesh.view.lowest(direction))
+        Some(self.view()?.lowest(direction))
     }
 
     /// Returns the nearest point of the surface, and the cosine between the direction to the point
@@ -383,13 +380,12 @@ impl TriangleShape<'_> {
     /// Returns true if a solid ends within a length along a ray that starts in it. The ground below a height field
     /// has no end.
     pub(super) fn ends_within(&self, [start, direction]: [DVec3; 2], length: f64) -> bool {
-        let Self::Mesh(MeshShape { view: MeshView { mesh, .. }, .. }) = self else { return false };
+        let Some(MeshView { mesh, .. }) = self.view() else { return false };
         let ends = [start, start + length * direction].map(|end| end.as_vec3());
         // The box has all points of the ray, as rounding to f32 is monotonic up to one step.
         let segment = Aabb::from_points(ends)
             .loosened(Real::EPSILON * ends[0].abs().max(ends[1].abs()).max_element());
-        let segment = BvhNode::leaf(segment, 0);
-        let near = mesh.bvh().leaves(|node| node.intersects(&segment));
+        let near = mesh.bvh().intersect_aabb(&segment);
         let corners =
             |triangle| mesh.triangle(triangle).vertices().map(|corner| corner.as_dvec3() - start);
         surface::ends_within(near.map(corners), direction, length, self.outward())
@@ -447,11 +443,7 @@ impl TriangleShape<'_> {
 
     /// Returns the tips of a mesh and half-edges that start there, for [far](super::far) contacts.
     pub(super) fn tips(&self) -> impl Iterator<Item = (u32, Vector)> {
-        let surface = match self {
-            Self::Mesh(MeshShape { surface, .. }) => surface.as_ref(),
-            Self::Field(_) => None,
-        };
-        surface.into_iter().flat_map(LazySurface::tips)
+        self.surface().into_iter().flat_map(LazySurface::tips)
     }
 }
 

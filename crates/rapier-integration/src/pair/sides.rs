@@ -156,20 +156,12 @@ impl<'a> HeldMesh<'a> {
     /// Returns `None` unless two meshes have contacts of surfaces.
     pub(super) fn of(shapes: &'a TriangleShapes<'_>) -> Option<Self> {
         let outer = shapes.larger;
-        let TriangleShape::Mesh(MeshShape { view: held, .. }) = &shapes[1 - outer] else {
-            return None;
-        };
+        let held = shapes[1 - outer].view()?;
         let TriangleShape::Mesh(MeshShape { view: holder, surface, room }) = &shapes[outer] else {
             return None;
         };
-        Some(Self {
-            pose: shapes.pose,
-            held,
-            holder,
-            surface: surface.as_ref()?,
-            outer,
-            room: *room,
-        })
+        let (pose, surface) = (shapes.pose, surface.as_ref()?);
+        Some(Self { pose, held, holder, surface, outer, room: *room })
     }
 
     /// Returns a motion for which a mesh without contacts is not pushed out.
