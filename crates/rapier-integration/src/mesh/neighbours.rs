@@ -11,7 +11,7 @@ use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
     Around, Facets, MinimumCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
-    hangs, is_flat, minimum_cones, place, side, sides, winding_sign,
+    area_vector, hangs, is_flat, minimum_cones, place, side, sides, winding_sign,
 };
 
 use super::flags::TriangleFlags;
@@ -241,8 +241,8 @@ impl RayTriangles for MeshRays<'_> {
     fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let bounds = self.0.triangle(triangle).local_aabb().loosened((slack as Real).next_up());
         let bounds = BvhNode::leaf(bounds, 0);
-        let [a, b, c] = self.corners(triangle);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let corners @ [a, ..] = self.corners(triangle);
+        let normal = area_vector(&corners).normalize_or_zero();
         // The box of a slanted triangle may hold a whole mesh.
         let is_near = |node: &BvhNode| {
             let [low, high] = [node.mins(), node.maxs()].map(|corner| corner.as_dvec3());

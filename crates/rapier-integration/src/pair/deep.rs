@@ -8,6 +8,7 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 use parry3d::query::Ray;
 use sbbk_core::query::TrianglePair;
+use sbbk_core::surface::area_vector;
 
 use super::islands::{IslandWay, OverlapIslands, Unsupported};
 use super::pose::PairPose;
@@ -59,9 +60,8 @@ impl Segment {
     fn of(crossing: &Unsupported, local: &TrianglePair) -> Option<Self> {
         let [t1, t2] = &local.corners;
         let outward =
-            |[a, b, c]: &[DVec3; 3], sign: f64| sign * (*b - *a).cross(*c - *a).normalize_or_zero();
-        let [sign1, sign2] = crossing.outward;
-        let [normal1, normal2] = [outward(t1, sign1), outward(t2, sign2)];
+            |i: usize| crossing.outward[i] * area_vector(&local.corners[i]).normalize_or_zero();
+        let [normal1, normal2] = [0, 1].map(outward);
         let along = normal1.cross(normal2);
         let [from1, to1] = cut(t1, normal2, t2[0], along)?;
         let [from2, to2] = cut(t2, normal1, t1[0], along)?;

@@ -16,7 +16,7 @@ use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleContact};
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{Around, Facets, Side};
+use sbbk_core::surface::{Around, Facets, Side, area_vector};
 
 use super::islands::{Crossing, SheetSide, Support};
 use super::shapes::{
@@ -226,10 +226,10 @@ impl<'a> SurfaceFilter<'a> {
 
     /// Returns the normal of a triangle, and the height of the middle of the other shape over it.
     pub(super) fn middle_over(&self, i: usize) -> (DVec3, f64) {
-        let [a, b, c] = self.local.corners[i];
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let corners = &self.local.corners[i];
+        let normal = area_vector(corners).normalize_or_zero();
         let middle = self.in_local(1 - i, self.shapes[1 - i].bounds().center());
-        (normal, normal.dot(middle - a))
+        (normal, normal.dot(middle - corners[0]))
     }
 
     /// Returns the contact of triangles that cross or have passed each other.
@@ -303,10 +303,10 @@ impl<'a> SurfaceFilter<'a> {
     fn height_over(&self, sheet: usize) -> (DVec3, f64) {
         let (normal, height) = self.middle_over(sheet);
         let own = self.in_frame(1 - sheet, normal).as_vec3();
-        let over = self.shapes.over_sheet(sheet);
-        let over = over.map(|over| (over, over.front.dot(normal)));
-        let over = match over.filter(|(_, along)| along.abs() > SAME_SIDE) {
-            Some((over, along)) => OverSheet { height: along.signum() * over.height, ..over },
+        let along = |over: &OverSheet| over.front.dot(normal);
+        let over = self.shapes.over_sheet(sheet).filter(|over| along(over).abs() > SAME_SIDE);
+        let over = match over {
+            Some(over) => OverSheet { height: along(&over).signum() * over.height, ..over },
             None => {
                 let half_height = f64::from(self.shapes[1 - sheet].height(own));
                 OverSheet { front: normal, height, half_height }
@@ -474,8 +474,8 @@ fn feature(TriangleContact { features, .. }: &TriangleContact, i: usize) -> Feat
 }
 
 /// Returns true if a unit direction is far from the normals of a triangle.
-fn leans([a, b, c]: &[DVec3; 3], direction: DVec3) -> bool {
-    let normal = (*b - *a).cross(*c - *a);
+fn leans(corners: &[DVec3; 3], direction: DVec3) -> bool {
+    let normal = area_vector(corners);
     normal.dot(direction).abs() < NEAR_NORMAL * normal.length()
 }
 

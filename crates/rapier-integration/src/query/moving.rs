@@ -10,6 +10,7 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::query::NonlinearRigidMotion;
 use sbbk_core::query::{Advance, AdvanceOptions, Bodies, advance};
+use sbbk_core::surface::area_vector;
 use sbbk_core::traverse::Placement;
 
 use super::Found;
@@ -240,13 +241,12 @@ impl<'a> MovingTriangle<'a> {
     /// infinite if that holds until `end`.
     fn clear_of_own_plane(&self, depth: f64, from: f64, end: f64) -> f64 {
         let MovingConvex { search, .. } = self.moving;
-        let [a, b, c] = self.corners;
         let mesh = place(self.moving.motions()[0], from);
-        let Some(normal) = (mesh.rotation * (b - a).cross(c - a)).try_normalize() else {
+        let Some(normal) = (mesh.rotation * area_vector(&self.corners)).try_normalize() else {
             return 0.0;
         };
         let inside = search.placed.in_mesh(search.balls()[1].centre.as_dvec3()).as_dvec3();
-        let is_toward = (mesh.rotation * (a - inside)).dot(normal) >= 0.0;
+        let is_toward = (mesh.rotation * (self.corners[0] - inside)).dot(normal) >= 0.0;
         self.clear_along(if is_toward { normal } else { -normal }, depth, from, end)
     }
 

@@ -22,7 +22,7 @@ pub use rays::{RayTriangles, ends_within};
 pub use sides::{Side, SurfaceKind, kind, side, winding_sign};
 pub use slopes::PlaceMemo;
 pub use spread::minimum_cones;
-pub use triangle::longest_side;
+pub use triangle::{area_vector, longest_side};
 pub use twins::{Place, hangs, is_flat, place, sides};
 
 use glamx::Vec3;

@@ -5,7 +5,8 @@ use glamx::DVec3;
 use crate::simd::each;
 
 /// Returns the normal of a triangle, as long as twice its area.
-pub(super) fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
+#[inline]
+pub fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*b - *a).cross(*c - *a)
 }
 

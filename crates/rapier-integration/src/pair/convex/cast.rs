@@ -11,6 +11,7 @@ use parry3d::math::Real;
 use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::query::first_that_counts;
+use sbbk_core::surface::area_vector;
 
 use super::contact::{core_contact, core_support};
 use super::near::time_of;
@@ -133,8 +134,8 @@ struct TriangleCast<'a> {
 impl TriangleCast<'_> {
     /// Returns by how much the plane of the triangle is farther from the shape than the target at the start.
     fn plane_at_start(&self) -> Option<Apart> {
-        let ([a, b, c], ConvexSearch { placed, convex, hull, .. }) = (self.start, self.search);
-        let normal = (b - a).cross(c - a).try_normalize()?;
+        let (a, ConvexSearch { placed, convex, hull, .. }) = (self.start[0], self.search);
+        let normal = area_vector(&self.start).try_normalize()?;
         let centre = placed.extent.ball().centre.as_dvec3();
         let normal = if normal.dot(centre - a) < 0.0 { -normal } else { normal };
         let lowest = core_support(*convex, hull, -normal)?;
@@ -210,10 +211,8 @@ impl TriangleCast<'_> {
         let radius = f64::from(search.convex.radius());
         let margin = (radius + target + velocity.length() * (latest - time)) * (1.0 + 1.0e-9);
         let margin = margin + self.slack(time);
-        if search.placed.is_beyond(&corners, margin) {
-            return None;
-        }
-        let mut contact = core_contact(&corners, search.convex, &search.hull, margin)?;
+        let ConvexSearch { placed, convex, hull, .. } = search;
+        let mut contact = core_contact(placed, &corners, *convex, hull, margin)?;
         contact.distance -= radius;
         contact.on_shape -= contact.normal * radius;
         contact.on_triangle -= travel;

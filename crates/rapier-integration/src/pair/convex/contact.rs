@@ -11,6 +11,7 @@ use sbbk_core::contact::convex::{
     half_space_contact,
 };
 
+use super::parts::PlacedPart;
 use super::shape::ConvexShape;
 
 /// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
@@ -81,13 +82,17 @@ impl KeptHull {
 }
 
 /// Contact of a triangle with a shape without its rounding radius, in the frame of the shape. `hull`
-/// keeps the points of a convex polyhedron from call to call.
+/// keeps the points of a convex polyhedron from call to call. Boxes are compared first.
 pub(super) fn core_contact(
+    placed: &PlacedPart,
     triangle: &[DVec3; 3],
     shape: ConvexShape<'_>,
     hull: &KeptHull,
     margin: f64,
 ) -> Option<ConvexContact> {
+    if placed.is_beyond(triangle, margin) {
+        return None;
+    }
     if let ConvexShape::HalfSpace(half_space) = shape {
         return half_space_contact(triangle, half_space.normal.as_dvec3(), margin);
     }
@@ -143,6 +148,7 @@ pub(super) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexC
 
 /// Returns true if a triangle crosses a shape without its radius or is within `reach` of it.
 pub(super) fn core_touches(
+    placed: &PlacedPart,
     triangle: &[DVec3; 3],
     shape: ConvexShape<'_>,
     hull: &KeptHull,
@@ -150,9 +156,10 @@ pub(super) fn core_touches(
 ) -> bool {
     // Faster than a contact: needs neither depths nor faces.
     if let Some(shape) = shape.polyhedron() {
-        return convex_touches(triangle, hull.of(shape), reach);
+        return !placed.is_beyond(triangle, reach)
+            && convex_touches(triangle, hull.of(shape), reach);
     }
-    core_contact(triangle, shape, hull, reach).is_some()
+    core_contact(placed, triangle, shape, hull, reach).is_some()
 }
 
 /// Computes with the support map of a shape; `None` for a half-space.

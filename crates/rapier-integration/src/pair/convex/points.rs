@@ -11,6 +11,7 @@ use parry3d::shape::{
 };
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{ConvexContact, FeaturePoint, FeaturePoints, clip_feature};
+use sbbk_core::surface::area_vector;
 use sbbk_core::volumes::rounding::gamma;
 
 use super::contact::{NormalSource, PartContact};
@@ -171,22 +172,18 @@ fn feature_id(polygon: &PolygonalFeature, feature: Feature) -> PackedFeatureId {
 }
 
 /// Returns a point of the shape with the point of the triangle along a normal; `None` beside the triangle.
-fn on_face(corners @ [a, b, c]: &[DVec3; 3], on_shape: DVec3, normal: DVec3) -> Option<PointPair> {
-    let face = (b - a).cross(c - a);
-    let distance = (on_shape - a).dot(face) / normal.dot(face);
+fn on_face(corners: &[DVec3; 3], on_shape: DVec3, normal: DVec3) -> Option<PointPair> {
+    let (face, features) = (area_vector(corners), UNNAMED);
+    let distance = (on_shape - corners[0]).dot(face) / normal.dot(face);
     let on_triangle = on_shape - normal * distance;
-    is_over(corners, on_triangle, 0.0).then_some(PointPair {
-        on_triangle,
-        on_shape,
-        distance,
-        features: UNNAMED,
-    })
+    let point = PointPair { on_triangle, on_shape, distance, features };
+    is_over(corners, on_triangle, 0.0).then_some(point)
 }
 
 /// Returns true if a point is over a triangle, seen along the normal of the triangle. Barycentric coordinates may be as far below
 /// zero as `slack`.
-pub(super) fn is_over([a, b, c]: &[DVec3; 3], point: DVec3, slack: f64) -> bool {
-    let face = (b - a).cross(c - a);
+pub(super) fn is_over(corners @ [a, b, c]: &[DVec3; 3], point: DVec3, slack: f64) -> bool {
+    let face = area_vector(corners);
     let least = -slack * face.length_squared();
     let is_beside = |from: &DVec3, to: &DVec3| (to - from).cross(point - from).dot(face) >= least;
     is_beside(a, b) && is_beside(b, c) && is_beside(c, a)
@@ -203,8 +200,8 @@ const BESIDE: f64 = 1.0e-6;
 /// Returns the length of a ray from the origin along a unit vector to a triangle, if it hits.
 ///
 /// Parry's balls touch there when a normal cone has turned the normal.
-pub(super) fn ray_length(&[a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<f64> {
-    let normal = (b - a).cross(c - a);
+pub(super) fn ray_length(corners: &[DVec3; 3], direction: DVec3) -> Option<f64> {
+    let ([a, b, c], normal) = (*corners, area_vector(corners));
     let length = a.dot(normal) / direction.dot(normal);
     let beside = |v: DVec3, w: DVec3| {
         let slack = BESIDE * v.length() * w.length();

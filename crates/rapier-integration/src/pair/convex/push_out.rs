@@ -8,7 +8,7 @@
 use glamx::DVec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::surface::SurfaceKind;
+use sbbk_core::surface::{SurfaceKind, area_vector};
 
 use super::contact::{NormalSource, PartContact};
 use super::pair::ConvexPair;
@@ -44,8 +44,8 @@ impl<'q> ConvexQuery<'q> {
             if behind.abs() < BEHIND || surface.kind() != SurfaceKind::Solid {
                 return None;
             }
-            let [a, b, c] = placed.in_part(self.pair.mesh.corners(triangle));
-            let normal = (b - a).cross(c - a).try_normalize()?;
+            let corners @ [a, ..] = placed.in_part(self.pair.mesh.corners(triangle));
+            let normal = area_vector(&corners).try_normalize()?;
             let reach = |direction: DVec3| placed.extent.reach(shape.shape, direction);
             let [above, below] = [reach(normal) - normal.dot(a), reach(-normal) + normal.dot(a)];
             if above >= below {

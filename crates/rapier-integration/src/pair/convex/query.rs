@@ -351,11 +351,7 @@ impl ConvexQuery<'_> {
             let radius = f64::from(shape.radius());
             let corners = placed.in_part(mesh.corners(triangle));
             let reach = limits.margin + radius;
-            let contact = if placed.is_beyond(&corners, reach) {
-                None
-            } else {
-                core_contact(&corners, shape, part_data.hull(part), reach)
-            };
+            let contact = core_contact(placed, &corners, shape, part_data.hull(part), reach);
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);

@@ -140,9 +140,7 @@ impl<'a> ConvexSearch<'a> {
         triangles_near(&self.placed, self.convex, &self.mesh, 0.0, (), |triangle| {
             let corners = self.placed.in_part(self.mesh.corners(triangle));
             let reach = TOUCHING * self.size(&corners) + radius;
-            let touches = !self.placed.is_beyond(&corners, reach)
-                && core_touches(&corners, self.convex, &self.hull, reach);
-            if touches {
+            if core_touches(&self.placed, &corners, self.convex, &self.hull, reach) {
                 touching = Some(triangle);
                 return ControlFlow::Break(());
             }
@@ -273,10 +271,7 @@ impl<'a> ConvexSearch<'a> {
         let touching = TOUCHING * self.size(&corners);
         let radius = f64::from(self.convex.radius());
         let reach = margin.max(touching) + radius;
-        if placed.is_beyond(&corners, reach) {
-            return None;
-        }
-        let mut contact = core_contact(&corners, self.convex, &self.hull, reach)?;
+        let mut contact = core_contact(placed, &corners, self.convex, &self.hull, reach)?;
         contact.distance -= radius;
         contact.on_shape -= contact.normal * radius;
         Some(FoundTriangle { triangle, contact, is_touching: contact.distance <= touching })

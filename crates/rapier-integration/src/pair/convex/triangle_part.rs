@@ -6,8 +6,8 @@ use parry3d::query::TrackedContact;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::surface::longest_side;
 use sbbk_core::surface::strays::seam;
+use sbbk_core::surface::{area_vector, longest_side};
 use sbbk_core::volumes::Sphere;
 
 use super::contact::{KeptHull, NormalSource, PartContact, SAME_WAY, core_contact, core_support};
@@ -67,9 +67,9 @@ impl TrianglePartPair<'_> {
     /// Returns the point of a contact in the frame of the mesh, and the distance up to which triangles
     /// touch that point. A contact with the normal of its triangle is no ghost and has `None`.
     pub(super) fn touched_place(&self, contact: &ConvexContact) -> Option<(Vec3, f64)> {
-        let corners @ [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
+        let corners = self.corners.map(|corner| corner.as_dvec3());
         let [normal, _] = self.placed.directions(contact.normal);
-        let is_upright = is_parallel((b - a).cross(c - a), normal);
+        let is_upright = is_parallel(area_vector(&corners), normal);
         (!is_upright).then(|| (self.placed.in_mesh(contact.on_triangle), seam(&corners)))
     }
 
@@ -247,7 +247,7 @@ impl TrianglePartPair<'_> {
         let is_parting = |contact: &ConvexContact| {
             contact.distance < 0.0 && !triangles.iter().any(|t| extends_beyond(t, contact))
         };
-        let over_edge = core_contact(&within, part.shape, hull, 0.0).filter(is_parting);
+        let over_edge = core_contact(placed, &within, part.shape, hull, 0.0).filter(is_parting);
         let [_, normal] = normals;
         let on_shape = core_support(part.shape, hull, -normal)?;
         let distance = normal.dot(on_shape - other[0]);
@@ -298,10 +298,10 @@ impl TrianglePartPair<'_> {
             return None;
         }
         // Each triangle is in front of the other one.
-        let of_floor @ [p, q, r] = &self.placed.in_part(of_floor);
-        let is_upright = is_parallel((q - p).cross(r - p), floor.normal);
+        let of_floor = &self.placed.in_part(of_floor);
+        let is_upright = is_parallel(area_vector(of_floor), floor.normal);
         let middle = self.placed.extent.ball().centre.as_dvec3();
-        let is_under = is_upright && floor.normal.dot(middle - p) > 0.0;
+        let is_under = is_upright && floor.normal.dot(middle - of_floor[0]) > 0.0;
         if !is_under || !extends_beyond(corners, floor) || !extends_beyond(of_floor, &wall) {
             return None;
         }
@@ -310,9 +310,9 @@ impl TrianglePartPair<'_> {
     }
 
     /// Returns the contact of the part with the plane of the triangle, on the side of the part's middle.
-    fn face_contact(&self, [a, b, c]: &[DVec3; 3]) -> Option<ConvexContact> {
+    fn face_contact(&self, corners @ [a, ..]: &[DVec3; 3]) -> Option<ConvexContact> {
         let Self { placed: PlacedPart { extent, .. }, part: Part { shape, .. }, .. } = *self;
-        let normal = (b - a).cross(c - a).try_normalize()?;
+        let normal = area_vector(corners).try_normalize()?;
         let middle = extent.ball().centre.as_dvec3();
         let normal = if normal.dot(middle - a) < 0.0 { -normal } else { normal };
         let reach = extent.reach(*shape, -normal) - f64::from(shape.radius());
@@ -343,8 +343,8 @@ fn extends_beyond(corners: &[DVec3; 3], contact: &ConvexContact) -> bool {
 }
 
 /// Returns the unit normal of a triangle by its winding. `None` unless another one is behind it.
-fn outward([a, b, c]: &[DVec3; 3], other: &[DVec3; 3]) -> Option<DVec3> {
-    let normal = (b - a).cross(c - a).try_normalize()?;
+fn outward(corners @ [a, ..]: &[DVec3; 3], other: &[DVec3; 3]) -> Option<DVec3> {
+    let normal = area_vector(corners).try_normalize()?;
     let is_behind = |corner: &DVec3| normal.dot(corner - a) <= LEVEL * corner.distance(*a);
     other.iter().all(is_behind).then_some(normal)
 }

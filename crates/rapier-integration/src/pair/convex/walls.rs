@@ -3,7 +3,7 @@
 
 use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Side, SurfaceKind};
+use sbbk_core::surface::{Side, SurfaceKind, area_vector};
 
 use super::contact::{NormalSource, PartContact, SAME_WAY};
 use super::points::contact_points;
@@ -137,8 +137,8 @@ impl ConvexQuery<'_> {
     ) -> bool {
         let [triangle, _] = self.pair.mesh_place.swap(*of);
         let around = surface.around(triangle);
-        let [a, b, c] = self.pair.mesh.corners(triangle).map(Vec3::as_dvec3);
-        let inward = -around.side.outward().unwrap_or(0.0) * (b - a).cross(c - a);
+        let area = area_vector(&self.pair.mesh.corners(triangle).map(Vec3::as_dvec3));
+        let inward = -around.side.outward().unwrap_or(0.0) * area;
         let direction =
             self.with_pair(*of, scratch, |pair| pair.placed.directions(hit.contact.normal)[0]);
         direction.is_some_and(|direction| {
