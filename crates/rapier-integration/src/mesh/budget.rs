@@ -33,17 +33,8 @@ impl BuildBudget {
         self.update(|saved| saved.checked_sub(count))
     }
 
-    /// Takes the cost of a hash of all content.
-    pub(super) fn charge_hash(&self, triangle_count: usize) {
-        self.charge(triangle_count / 64);
-    }
-
-    /// Takes the cost of a surface.
-    pub(super) fn charge_surface(&self, triangle_count: usize) {
-        self.charge(triangle_count / 6);
-    }
-
-    fn charge(&self, amount: usize) {
+    /// Takes a cost, even if less is saved up.
+    pub(super) fn charge(&self, amount: usize) {
         let amount = u32::try_from(amount).unwrap_or(u32::MAX);
         self.update(|saved| Some(saved.saturating_sub(amount)));
     }
@@ -66,9 +57,8 @@ mod tests {
         (1..needed).for_each(|_| budget.earn());
         assert!(!budget.spend(limit));
         (0..3 * needed).for_each(|_| budget.earn());
-        budget.charge_hash(64);
-        budget.charge_surface(6);
+        budget.charge(2);
         assert!(!budget.spend(limit - 1) && budget.spend(limit - 2) && !budget.spend(1));
-        budget.charge_surface(usize::MAX);
+        budget.charge(usize::MAX);
     }
 }

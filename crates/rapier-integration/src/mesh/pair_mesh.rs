@@ -78,7 +78,11 @@ impl PairMesh {
         needs_tree: bool,
     ) -> Option<LazySurface<'a>> {
         let (Self::Rigid(known), MeshView { mesh, store, .. }) = (self, view) else { return None };
-        let is_first = known.search_registered(view);
+        let is_first = known.searched_at.is_none();
+        if is_first {
+            known.searched_at = Some(store.registrations());
+            known.set_registered(store.registered(mesh));
+        }
         if needs_tree && !is_first && is_small(mesh.indices().len()) {
             store.build_within_budget(mesh, known.data.get_or_init(|| store.entry(mesh)));
         }
@@ -97,17 +101,6 @@ impl RigidMesh {
             data: OnceLock::new(),
             neighbours: Neighbours::default(),
         }
-    }
-
-    /// Looks for the mesh among the registered ones, and returns true, in the first query that needs
-    /// its surface.
-    fn search_registered(&mut self, view: &MeshView<'_>) -> bool {
-        let is_first = self.searched_at.is_none();
-        if is_first {
-            self.searched_at = Some(view.store.registrations());
-            self.set_registered(view.store.registered(view.mesh));
-        }
-        is_first
     }
 
     /// Takes note of registrations and declared kinds since the last query.
@@ -137,13 +130,8 @@ impl RigidMesh {
         self.neighbours.limit();
         let is_whole = self.is_registered || is_analysed(view.mesh.indices().len());
         let near = (!is_whole).then_some(&self.neighbours);
-        LazySurface {
-            data: &self.data,
-            view,
-            near,
-            declared: OnceLock::new(),
-            memo: PlaceMemo::default(),
-        }
+        let (declared, memo) = Default::default();
+        LazySurface { data: &self.data, view, near, declared, memo }
     }
 }
 

@@ -150,7 +150,8 @@ impl MeshStore {
         if !is_small(count) {
             return self.entry_of(ContentHash::of_samples(mesh));
         }
-        self.budget.charge_hash(count);
+        // A hash takes as long as the tree of one of 64 triangles.
+        self.budget.charge(count / 64);
         self.entry_of(ContentHash::of(mesh))
     }
 
@@ -204,19 +205,14 @@ impl MeshStore {
 
     #[cold]
     fn analyse<'a>(&self, mesh: &TriMesh, data: &'a Arc<MeshData>) -> &'a Surface {
-        self.budget.charge_surface(mesh.indices().len());
+        // A surface takes a sixth of the time of a tree.
+        self.budget.charge(mesh.indices().len() / 6);
         let surface = data.analyse(mesh);
         self.contents().keep_recent(data, self.recent_limit);
         surface
     }
 
-    /// Counts a descent without trees.
-    pub(crate) fn count_walk(&self) {
-        self.counters.walks.raise();
-        self.earn_tree();
-    }
-
-    /// Notes a search without trees, which earns time for trees.
+    /// Notes a descent or a search without trees, which earns time for trees.
     pub(crate) fn earn_tree(&self) {
         self.budget.earn();
     }

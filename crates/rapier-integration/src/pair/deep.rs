@@ -226,20 +226,11 @@ pub(super) fn add_contacts(
     }
 }
 
-/// Removes contacts that push aside by more than the way out of their island. Triangles beside an edge that crosses an edge know no
-/// shorter way.
-pub(super) fn remove_farther(
+/// Returns true if a contact pushes aside, and by more than the way out of its island, which parts its triangles as well. Triangles
+/// beside an edge that crosses an edge know no shorter way.
+pub(super) fn pushes_farther(
     shapes: &TriangleShapes<'_>,
-    islands: &mut OverlapIslands,
-    contacts: &mut ContactList<TriangleSurfaceContact>,
-) {
-    contacts.retain(|hit| !pushes_farther(shapes, islands, hit));
-}
-
-/// Returns true if a contact pushes aside, and by more than the way out of its island, which parts its triangles as well.
-fn pushes_farther(
-    shapes: &TriangleShapes<'_>,
-    islands: &mut OverlapIslands,
+    islands: &OverlapIslands,
     (pair, TriangleSurfaceContact { contact, source }): &TriangleHit,
 ) -> bool {
     let Some(way) = islands.way(*pair) else { return false };

@@ -220,7 +220,8 @@ impl TriangleShapes<'_> {
                 ControlFlow::Continue(())
             });
         });
-        meshes[0].store.count_walk();
+        meshes[0].store.counters.walks.raise();
+        meshes[0].store.earn_tree();
     }
 
     fn descend_field(

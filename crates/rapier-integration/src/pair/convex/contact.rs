@@ -27,6 +27,9 @@ pub(crate) struct PartContact {
     pub(super) source: NormalSource,
 }
 
+/// A contact and its subshapes.
+pub(super) type Hit = ([u32; 2], PartContact);
+
 /// Origin of the normal of a contact.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) enum NormalSource {

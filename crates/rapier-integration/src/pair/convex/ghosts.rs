@@ -33,7 +33,7 @@ use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 
-use super::contact::PartContact;
+use super::contact::{Hit, PartContact};
 
 /// Share of the size by which two distances must differ to count as different. Higher: ghosts stay.
 /// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
@@ -117,10 +117,20 @@ fn contact_of(entry: u128) -> u32 {
     (entry >> 8) as u32
 }
 
+/// Returns the distance of a contact.
+fn distance(contacts: &[Hit], index: u32) -> f64 {
+    contacts[index as usize].1.contact.distance
+}
+
+/// Returns the contact with the least distance: `first`, or one of some others.
+fn nearest_of(contacts: &[Hit], first: u32, others: impl IntoIterator<Item = u32>) -> u32 {
+    let is_nearer = |a: u32, b: u32| distance(contacts, b) < distance(contacts, a);
+    others.into_iter().fold(first, |a, b| if is_nearer(a, b) { b } else { a })
+}
+
 /// Returns false if no two contacts have normals more than a right angle apart.
-fn push_apart<I>(contacts: &[(I, PartContact)]) -> bool {
-    let normal = |(_, hit): &(I, PartContact)| hit.contact.normal;
-    let mut normals = contacts.iter().map(normal);
+fn push_apart(contacts: &[Hit]) -> bool {
+    let mut normals = contacts.iter().map(|(_, hit)| hit.contact.normal);
     let Some(first) = normals.next() else { return false };
     normals.any(|normal| first.dot(normal) < FRAC_1_SQRT_2 + EQUAL)
 }
@@ -141,13 +151,13 @@ impl GhostContacts {
     /// `keys` returns the corners of a contact's triangle. `extends_beyond(a, b)` is true if the triangle of
     /// contact `a` extends beyond contact `b` along the normal of `b`. `find_strays` adds the
     /// contacts of triangles at the point of a contact. `find_wall` returns the contact of a wall whose foot a nearer contact is.
-    pub(super) fn find<I>(
+    pub(super) fn find(
         &mut self,
-        contacts: &[(I, PartContact)],
-        keys: impl Fn(&I) -> [u64; 3],
-        mut extends_beyond: impl FnMut(&I, &ConvexContact) -> bool,
-        mut find_strays: impl FnMut(&(I, PartContact), &mut Vec<u32>),
-        mut find_wall: impl FnMut(&I, &(I, PartContact)) -> Option<ConvexContact>,
+        contacts: &[Hit],
+        keys: impl Fn([u32; 2]) -> [u64; 3],
+        mut extends_beyond: impl FnMut([u32; 2], &ConvexContact) -> bool,
+        mut find_strays: impl FnMut(&Hit, &mut Vec<u32>),
+        mut find_wall: impl FnMut([u32; 2], &Hit) -> Option<ConvexContact>,
     ) {
         self.begin(contacts, keys);
         let may_have_walls = push_apart(contacts);
@@ -155,15 +165,13 @@ impl GhostContacts {
             if *feature == Feature::Face {
                 continue;
             }
-            let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
             let size = own.on_triangle.abs().max_element() + own.distance.abs();
-            let is_nearer = |other: u32| distance(other) < own.distance - EQUAL * size;
+            let is_nearer = |other: u32| distance(contacts, other) < own.distance - EQUAL * size;
             let mut nearest = self.nearest(contacts, contact, *feature);
             let mut range = [0; 2];
             if !is_nearer(nearest) {
                 let strays = self.strays_of(contacts, contact, &mut find_strays);
-                let is_nearest = distance(strays.nearest) < distance(nearest);
-                nearest = if is_nearest { strays.nearest } else { nearest };
+                nearest = nearest_of(contacts, nearest, [strays.nearest]);
                 if !strays.are_apart && self.is_border(contact, *feature) {
                     self.borders.push(contact);
                 }
@@ -185,18 +193,18 @@ impl GhostContacts {
 
     /// Returns the contact of a wall if a contact at the same feature, or a stray, is of its floor. A contact
     /// at the foot of a wall leads into the floor.
-    fn wall<I>(
+    fn wall(
         &self,
-        contacts: &[(I, PartContact)],
+        contacts: &[Hit],
         contact: u32,
         strays: [u32; 2],
-        find_wall: &mut impl FnMut(&I, &(I, PartContact)) -> Option<ConvexContact>,
+        find_wall: &mut impl FnMut([u32; 2], &Hit) -> Option<ConvexContact>,
     ) -> Option<ConvexContact> {
         let (of, PartContact { contact: own, feature, .. }) = &contacts[contact as usize];
         let others = self.at_feature(contact, *feature).chain(self.strays_in(strays));
         let others = others.take(CROWD).map(|other| &contacts[other as usize]);
         let mut floors = others.filter(|(_, it)| it.contact.normal.dot(own.normal) < 0.0);
-        floors.find_map(|floor| find_wall(of, floor))
+        floors.find_map(|floor| find_wall(*of, floor))
     }
 
     /// Replaces each source by the last one of its chain.
@@ -212,7 +220,7 @@ impl GhostContacts {
     }
 
     /// Forgets the last contacts, and lists the new ones of each corner.
-    fn begin<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [u64; 3]) {
+    fn begin(&mut self, contacts: &[Hit], keys: impl Fn([u32; 2]) -> [u64; 3]) {
         self.kept_strays = 0;
         self.walls.clear();
         self.on_faces.clear();
@@ -222,31 +230,24 @@ impl GhostContacts {
         let Self { entries, corners, triangles, .. } = self;
         entries.clear();
         for (contact, (of, _)) in (0..).zip(contacts) {
-            let corners = (0..).zip(keys(of));
+            let corners = (0..).zip(keys(*of));
             entries.extend(corners.map(|(i, key)| u128::from(key) << 64 | contact << 8 | i));
         }
         entries.sort_unstable();
         corners.clear();
         triangles.clear();
         triangles.resize(contacts.len(), [0; 3]);
-        let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
         let mut last_key = None;
         for (start, &entry) in (0..).zip(&*entries) {
             let nearest = contact_of(entry);
             if last_key.replace(entry >> 64) != Some(entry >> 64) {
-                corners.push(Corner {
-                    start,
-                    nearest,
-                    passed: None,
-                    strays: None,
-                    is_border: None,
-                });
+                let (passed, strays, is_border) = (None, None, None);
+                corners.push(Corner { start, nearest, passed, strays, is_border });
             }
             let corner = corners.len() - 1;
             triangles[nearest as usize][usize::from(entry as u8)] = corner as u32;
-            if distance(nearest) < distance(corners[corner].nearest) {
-                corners[corner].nearest = nearest;
-            }
+            let known = &mut corners[corner].nearest;
+            *known = nearest_of(contacts, *known, [nearest]);
         }
     }
 
@@ -267,22 +268,20 @@ impl GhostContacts {
     }
 
     /// Returns the contact with the least distance at the feature of a contact.
-    fn nearest<I>(&self, contacts: &[(I, PartContact)], contact: u32, feature: Feature) -> u32 {
-        let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
+    fn nearest(&self, contacts: &[Hit], contact: u32, feature: Feature) -> u32 {
         if let Feature::Vertex(i) = feature {
             let corner = self.triangles[contact as usize][usize::from(i)];
             return self.corners[corner as usize].nearest;
         }
-        let nearer = |a: u32, b: u32| if distance(b) < distance(a) { b } else { a };
-        self.at_feature(contact, feature).fold(contact, nearer)
+        nearest_of(contacts, contact, self.at_feature(contact, feature))
     }
 
     /// Finds the strays of a contact. All contacts at a vertex have the same strays.
-    fn strays_of<I>(
+    fn strays_of(
         &mut self,
-        contacts: &[(I, PartContact)],
+        contacts: &[Hit],
         contact: u32,
-        find_strays: &mut impl FnMut(&(I, PartContact), &mut Vec<u32>),
+        find_strays: &mut impl FnMut(&Hit, &mut Vec<u32>),
     ) -> Strays {
         let hit = &contacts[contact as usize];
         let at = match hit.1.feature {
@@ -296,12 +295,10 @@ impl GhostContacts {
         self.strays.truncate(start as usize);
         find_strays(hit, &mut self.strays);
         let range = [start, self.strays.len() as u32];
-        let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
-        let nearer = |a: u32, b: u32| if distance(b) < distance(a) { b } else { a };
         let ends = ends(hit.1.feature).map(|end| self.triangles[contact as usize][end]);
         let is_apart =
             |other: u32| !ends.iter().any(|end| self.triangles[other as usize].contains(end));
-        let nearest = self.strays_in(range).fold(contact, nearer);
+        let nearest = nearest_of(contacts, contact, self.strays_in(range));
         let strays = Strays { range, nearest, are_apart: self.strays_in(range).any(is_apart) };
         if let Some(corner) = at {
             self.corners[corner as usize].strays = Some(strays);
@@ -337,12 +334,12 @@ impl GhostContacts {
     }
 
     /// Returns true if a triangle at the feature of a contact extends beyond it along its normal.
-    fn is_passed<I>(
+    fn is_passed(
         &mut self,
-        contacts: &[(I, PartContact)],
+        contacts: &[Hit],
         contact: u32,
         strays: [u32; 2],
-        extends_beyond: &mut impl FnMut(&I, &ConvexContact) -> bool,
+        extends_beyond: &mut impl FnMut([u32; 2], &ConvexContact) -> bool,
     ) -> bool {
         let PartContact { contact: ref own, feature, .. } = contacts[contact as usize].1;
         let [one, _] = ends(feature).map(|end| self.triangles[contact as usize][end]);
@@ -358,7 +355,7 @@ impl GhostContacts {
         let is_passed = self
             .at_feature(contact, feature)
             .chain(self.strays_in(strays))
-            .any(|other| extends_beyond(&contacts[other as usize].0, own));
+            .any(|other| extends_beyond(contacts[other as usize].0, own));
         if let Feature::Vertex(_) = feature {
             self.corners[one as usize].passed = Some((contact, is_passed));
         }
@@ -401,13 +398,14 @@ mod tests {
     #[test]
     fn contacts_visited_grow_with_the_number_of_contacts() {
         const COUNT: u32 = 32_768;
-        let contacts: Vec<_> = (0..COUNT).map(|i| (i, contact(-0.1, Feature::Edge(1)))).collect();
+        let contacts: Vec<_> =
+            (0..COUNT).map(|i| ([i, 0], contact(-0.1, Feature::Edge(1)))).collect();
         let (mut ghosts, calls) = (GhostContacts::default(), Cell::new(0));
-        let extends_beyond = |_: &u32, _: &ConvexContact| {
+        let extends_beyond = |_: [u32; 2], _: &ConvexContact| {
             calls.set(calls.get() + 1);
             false
         };
-        ghosts.find(&contacts, |&i| strip(i), extends_beyond, |_, _| {}, |_, _| None);
+        ghosts.find(&contacts, |[i, _]| strip(i), extends_beyond, |_, _| {}, |_, _| None);
         assert!(calls.get() <= 6 * COUNT, "{} calls", calls.get());
         for i in 0..COUNT {
             ghosts.list_nearby(i);
@@ -419,16 +417,16 @@ mod tests {
     #[test]
     fn chains_of_ghosts_end_at_the_nearest_contact() {
         for count in [4, 40] {
-            let of = |i: u32| (i, contact(0.01 * f64::from(i), Feature::Edge(0)));
+            let of = |i: u32| ([i, 0], contact(0.01 * f64::from(i), Feature::Edge(0)));
             let mut contacts: Vec<_> = (0..count).map(of).collect();
             let mut ghosts = GhostContacts::default();
-            ghosts.find(&contacts, |&i| strip(i), |_, _| true, |_, _| {}, |_, _| None);
+            ghosts.find(&contacts, |[i, _]| strip(i), |_, _| true, |_, _| {}, |_, _| None);
             assert_eq!(ghosts.sources, vec![0; count as usize]);
             assert!(ghosts.on_faces.is_empty(), "nothing crosses");
             contacts[2].1.feature = Feature::Face;
             contacts[1].1.contact.distance = -0.3;
             contacts[2].1.contact.distance = -0.2;
-            ghosts.find(&contacts, |&i| strip(i), |_, _| true, |_, _| {}, |_, _| None);
+            ghosts.find(&contacts, |[i, _]| strip(i), |_, _| true, |_, _| {}, |_, _| None);
             assert_eq!(ghosts.sources[..4], [0, 1, 2, 2]);
             assert_eq!(ghosts.on_faces, [1]);
             ghosts.list_nearby(1);
@@ -442,14 +440,14 @@ mod tests {
         let mut contacts: Vec<_> =
             [Feature::Vertex(0), Feature::Edge(0), Feature::Vertex(0), Feature::Face]
                 .into_iter()
-                .map(at)
-                .enumerate()
+                .zip(0..)
+                .map(|(feature, i)| ([i, 0], at(feature)))
                 .collect();
         contacts[2].1.contact.normal = DVec3::X;
         let mut ghosts = GhostContacts::default();
-        let keys = |&i: &usize| strip([0, 10, 0, 20][i]);
-        let extends_beyond = |&i: &usize, _: &ConvexContact| i == 3;
-        let strays = |(i, _): &(usize, PartContact), strays: &mut Vec<u32>| {
+        let keys = |[i, _]: [u32; 2]| strip([0, 10, 0, 20][i as usize]);
+        let extends_beyond = |[i, _]: [u32; 2], _: &ConvexContact| i == 3;
+        let strays = |([i, _], _): &Hit, strays: &mut Vec<u32>| {
             strays.extend((*i == 1).then_some(3));
         };
         ghosts.find(&contacts, keys, extends_beyond, strays, |_, _| None);

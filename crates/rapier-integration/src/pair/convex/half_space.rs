@@ -95,7 +95,6 @@ fn near_corners(
     normal: DVec3,
     within: f64,
 ) -> impl Iterator<Item = (u8, DVec3, f64)> {
-    let distances = corners.iter().map(move |&corner| (corner, corner.dot(normal)));
-    let numbered = (0..).zip(distances).map(|(i, (corner, distance))| (i, corner, distance));
-    numbered.filter(move |(.., distance)| *distance <= within)
+    let heights = (0..).zip(corners).map(move |(i, corner)| (i, *corner, corner.dot(normal)));
+    heights.filter(move |(.., distance)| *distance <= within)
 }

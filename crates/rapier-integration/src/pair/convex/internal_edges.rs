@@ -9,7 +9,7 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::strays::{self, touches};
 use sbbk_core::surface::{Around, Side, SurfaceKind};
 
-use super::contact::{NormalSource, PartContact};
+use super::contact::{Hit, NormalSource, PartContact};
 use super::ghosts::{GhostContacts, UprightContact, corner_key};
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::box_between;
@@ -22,7 +22,7 @@ impl ConvexQuery<'_> {
     /// Calls `found` with the contacts of other triangles within `seam` of a place on the mesh.
     pub(super) fn strays_at(
         &self,
-        contacts: &[([u32; 2], PartContact)],
+        contacts: &[Hit],
         of: [u32; 2],
         place: Vec3,
         seam: f64,
@@ -55,13 +55,8 @@ impl ConvexQuery<'_> {
     }
 
     /// Replaces the normals of ghost contacts and of contacts at borders.
-    pub(super) fn correct_ghosts(
-        &self,
-        contacts: &mut [([u32; 2], PartContact)],
-        scratch: &mut ConvexScratch,
-    ) {
-        let is_at_border =
-            |(_, contact): &([u32; 2], PartContact)| contact.feature != Feature::Face;
+    pub(super) fn correct_ghosts(&self, contacts: &mut [Hit], scratch: &mut ConvexScratch) {
+        let is_at_border = |(_, contact): &Hit| contact.feature != Feature::Face;
         scratch.ghosts.upright.clear();
         if !self.pair.has_surface() || !contacts.iter().any(is_at_border) {
             return;
@@ -86,26 +81,26 @@ impl ConvexQuery<'_> {
     fn find_ghosts(
         &self,
         ghosts: &mut GhostContacts,
-        contacts: &[([u32; 2], PartContact)],
+        contacts: &[Hit],
         scratch: &mut ConvexScratch,
     ) {
-        let keys = |&of: &[u32; 2]| {
+        let keys = |of: [u32; 2]| {
             let [triangle, part] = self.pair.mesh_place.swap(of);
             self.pair.mesh.corners(triangle).map(|corner| corner_key(part, corner))
         };
         let scratch_of = RefCell::new(scratch);
-        let extends_beyond = |&of: &[u32; 2], contact: &ConvexContact| {
+        let extends_beyond = |of: [u32; 2], contact: &ConvexContact| {
             let scratch = &mut scratch_of.borrow_mut();
             self.with_pair(of, scratch, |pair| pair.extends_beyond(contact)).unwrap_or(false)
         };
-        let find_strays = |(of, hit): &([u32; 2], PartContact), strays: &mut Vec<u32>| {
+        let find_strays = |(of, hit): &Hit, strays: &mut Vec<u32>| {
             let scratch = &mut scratch_of.borrow_mut();
             let place = self.with_pair(*of, scratch, |pair| pair.touched_place(&hit.contact));
             if let Some((place, seam)) = place.flatten() {
                 self.strays_at(contacts, *of, place, seam, |stray| strays.push(stray));
             }
         };
-        let find_wall = |&of: &[u32; 2], (of_floor, floor): &([u32; 2], PartContact)| {
+        let find_wall = |of: [u32; 2], (of_floor, floor): &Hit| {
             let [floor_triangle, _] = self.pair.mesh_place.swap(*of_floor);
             let of_floor = self.pair.mesh.corners(floor_triangle);
             let scratch = &mut scratch_of.borrow_mut();
@@ -118,7 +113,7 @@ impl ConvexQuery<'_> {
     fn turn_at_borders(
         &self,
         ghosts: &mut GhostContacts,
-        contacts: &mut [([u32; 2], PartContact)],
+        contacts: &mut [Hit],
         scratch: &mut ConvexScratch,
     ) {
         let GhostContacts { borders, sources, upright, .. } = ghosts;
@@ -159,7 +154,7 @@ impl ConvexQuery<'_> {
     fn turn_to_faces(
         &self,
         ghosts: &mut GhostContacts,
-        contacts: &mut [([u32; 2], PartContact)],
+        contacts: &mut [Hit],
         scratch: &mut ConvexScratch,
     ) {
         for i in 0..ghosts.on_faces.len() {
@@ -188,7 +183,7 @@ impl ConvexQuery<'_> {
     fn least_deep(
         &self,
         ghosts: &GhostContacts,
-        contacts: &[([u32; 2], PartContact)],
+        contacts: &[Hit],
         passed: u32,
         face: PartContact,
         scratch: &mut ConvexScratch,

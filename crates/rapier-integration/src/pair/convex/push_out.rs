@@ -10,7 +10,7 @@ use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::{SurfaceKind, area_vector};
 
-use super::contact::{NormalSource, PartContact};
+use super::contact::{Hit, NormalSource, PartContact};
 use super::pair::ConvexPair;
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{BEHIND, LazySurface, is_covered};
@@ -76,7 +76,7 @@ impl<'q> ConvexQuery<'q> {
             return;
         }
         let ConvexPair { parts, mesh_place, .. } = self.pair;
-        let part_of = |(of, _): &([u32; 2], PartContact)| mesh_place.swap(*of)[1];
+        let part_of = |(of, _): &Hit| mesh_place.swap(*of)[1];
         let (mut depths, mut pushed) = std::mem::take(&mut scratch.push_outs);
         depths.extend(contacts.iter().map(|hit| (part_of(hit), hit.1.contact.distance)));
         depths.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));

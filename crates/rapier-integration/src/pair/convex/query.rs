@@ -11,7 +11,7 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::{BoxTest, DescentCounts, SlackLimits, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
-use super::contact::{PartContact, ball_contact, core_contact};
+use super::contact::{Hit, PartContact, ball_contact, core_contact};
 use super::ghosts::GhostContacts;
 use super::near::triangles_near;
 use super::pair::ConvexPair;
@@ -274,7 +274,7 @@ impl PairQuery for ConvexQuery<'_> {
 
     fn summary(
         &mut self,
-        (subshapes, contact): &([u32; 2], PartContact),
+        (subshapes, contact): &Hit,
         scratch: &mut ConvexScratch,
         points: &mut ContactPoints,
     ) -> Option<ContactSummary> {
@@ -284,7 +284,7 @@ impl PairQuery for ConvexQuery<'_> {
     #[inline(always)]
     fn points(
         &mut self,
-        (subshapes, contact): &([u32; 2], PartContact),
+        (subshapes, contact): &Hit,
         scratch: &mut ConvexScratch,
         points: &mut ContactPoints,
     ) {

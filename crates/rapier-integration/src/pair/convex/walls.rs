@@ -5,7 +5,7 @@ use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{Side, SurfaceKind, area_vector};
 
-use super::contact::{NormalSource, PartContact, SAME_WAY};
+use super::contact::{Hit, NormalSource, PartContact, SAME_WAY};
 use super::points::contact_points;
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{LazySurface, is_covered};
@@ -20,9 +20,6 @@ const TANGENTIAL: f64 = 1.0e-4;
 /// Share of a distance by which an equal one may differ. Higher: contacts apart are lost. Lower: bodies catch on the foot of a step or chamfer
 /// that they slide over.
 const EQUAL: f64 = 1.0e-6;
-
-/// A contact and its subshapes.
-type Hit = ([u32; 2], PartContact);
 
 impl ConvexQuery<'_> {
     /// Removes the contacts of triangles that have the body on both sides, those that lead into the body, and those behind these. Asks

@@ -83,7 +83,7 @@ impl TriangleQuery<'_> {
     ) {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
         deep::add_contacts(&self.shapes, islands, contours, contacts);
-        deep::remove_farther(&self.shapes, islands, contacts);
+        contacts.retain(|hit| !deep::pushes_farther(&self.shapes, islands, hit));
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(support) = islands.open_support(&crossing) else { continue };
