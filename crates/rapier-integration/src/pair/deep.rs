@@ -10,7 +10,7 @@ use parry3d::query::Ray;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::area_vector;
 
-use super::islands::{IslandWay, OverlapIslands, Unsupported};
+use super::islands::{Crossing, IslandWay, OverlapIslands};
 use super::pose::PairPose;
 use super::query::ContactList;
 use super::shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
@@ -57,10 +57,9 @@ struct Segment {
 
 impl Segment {
     /// Returns `None` for triangles that do not cross.
-    fn of(crossing: &Unsupported, local: &TrianglePair) -> Option<Self> {
-        let [t1, t2] = &local.corners;
-        let outward =
-            |i: usize| crossing.outward[i] * area_vector(&local.corners[i]).normalize_or_zero();
+    fn of(crossing: &Crossing, local: &TrianglePair) -> Option<Self> {
+        let ([t1, t2], signs) = (&local.corners, crossing.outward_signs()?);
+        let outward = |i: usize| signs[i] * area_vector(&local.corners[i]).normalize_or_zero();
         let [normal1, normal2] = [0, 1].map(outward);
         let along = normal1.cross(normal2);
         let [from1, to1] = cut(t1, normal2, t2[0], along)?;
@@ -69,7 +68,7 @@ impl Segment {
         let to = if to1.dot(along) <= to2.dot(along) { to1 } else { to2 };
         (from.dot(along) < to.dot(along)).then(|| Self {
             pair: crossing.pair,
-            has_contact: crossing.has_contact,
+            has_contact: crossing.is_fine(),
             ends: [from, to].map(|end| local.origin.as_dvec3() + end),
             outward: normal1 + normal2,
         })
@@ -172,7 +171,7 @@ impl<'s> Contour<'s> {
 /// Memory for contours: crossings by island, and the segments of an island.
 #[derive(Default)]
 pub(super) struct ContourMemory {
-    crossings: Vec<Unsupported>,
+    crossings: Vec<Crossing>,
     segments: Vec<Segment>,
 }
 
@@ -215,7 +214,7 @@ pub(super) fn add_contacts(
         let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
             continue;
         };
-        if length >= contour.most.min(island[0].most) {
+        if length >= contour.most.min(islands.longest_way(island[0].island)) {
             continue;
         }
         contacts.extend(points.iter().zip(exits).filter_map(|((segment, point), exits)| {

@@ -92,20 +92,6 @@ impl Support {
 /// A triangle, and its mesh: 0 or 1.
 type Node = (usize, u32);
 
-/// A crossing of an island that has too few contacts.
-pub(super) struct Unsupported {
-    pub(super) island: usize,
-    pub(super) pair: [u32; 2],
-    /// True if the pair has a final contact.
-    pub(super) has_contact: bool,
-    /// The way out of a contour is of use to the island if it is shorter. Infinite if contacts are too few.
-    pub(super) most: f64,
-    /// Signs with which the normals of the triangles lead out of the shapes.
-    pub(super) outward: [f64; 2],
-    /// See [`Crossing::is_sheet`].
-    pub(super) is_sheet: [bool; 2],
-}
-
 /// Two triangles that cross or have passed each other.
 #[derive(Copy, Clone)]
 pub(super) struct Crossing {
@@ -154,7 +140,7 @@ impl SheetSide {
 
 impl Crossing {
     /// Returns true if the contact of the pair is reliable and pushes the right way.
-    fn is_fine(&self) -> bool {
+    pub(super) fn is_fine(&self) -> bool {
         self.is_reliable && !self.is_rejected
     }
 
@@ -166,7 +152,7 @@ impl Crossing {
 
     /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. A sheet counts as
     /// solid on the side away from the middle of the other shape.
-    fn outward_signs(&self) -> Option<[f64; 2]> {
+    pub(super) fn outward_signs(&self) -> Option<[f64; 2]> {
         let of_sheet = |i: usize| {
             let SheetSide { shape, height, .. } = self.sheet?;
             Some(if shape? == i { height.signum() } else { 1.0 })
@@ -273,19 +259,20 @@ impl OverlapIslands {
 
     /// Replaces `list` by the crossings in islands whose contacts are too few or push far, one island after another. Crossings
     /// with an unknown outer side are left out.
-    pub(super) fn list_unsupported(&self, list: &mut Vec<Unsupported>) {
+    pub(super) fn list_unsupported(&self, list: &mut Vec<Crossing>) {
+        let is_listed = |crossing: &&Crossing| {
+            let has_sides = crossing.is_crossing && crossing.outward_signs().is_some();
+            has_sides && self.longest_way(crossing.island) > 0.0
+        };
         list.clear();
-        for crossing in self.crossings.iter().filter(|crossing| crossing.is_crossing) {
-            let Some(outward) = crossing.outward_signs() else { continue };
-            let Crossing { pair, is_sheet, island, .. } = *crossing;
-            let support = self.support[island];
-            let most = if support.is_enough() { support.farthest } else { f64::INFINITY };
-            if most > 0.0 {
-                let has_contact = crossing.is_fine();
-                list.push(Unsupported { island, pair, has_contact, most, outward, is_sheet });
-            }
-        }
+        list.extend(self.crossings.iter().filter(is_listed));
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
+    }
+
+    /// Returns the length up to which the way out of a contour is of use to an island. Infinite if contacts are too few.
+    pub(super) fn longest_way(&self, island: usize) -> f64 {
+        let support = self.support[island];
+        if support.is_enough() { support.farthest } else { f64::INFINITY }
     }
 
     /// Returns the way out of the overlap that a crossing pair belongs to, if it is known.
