@@ -6,6 +6,7 @@
 //! any direction separates the bodies. If both distances agree, the move is the least one. Rounding
 //! of thin faces can end the growth early, but every move separates the bodies.
 
+use super::ConvexContact;
 use super::polytope::{Face, Polytope};
 use super::simplex::{Simplex, thin_normal};
 use super::support::{Difference, SupportMap, Vertex};
@@ -20,23 +21,12 @@ const ROUNDING: f64 = 1.0e-14;
 /// A difference with less extent across its widest plane or line, as a share of the size, has none.
 const FLAT: f64 = 1.0e-12;
 
-/// The direction of the least translation of the triangle, its length, and the point of the
-/// triangle that moves on to the shape.
-#[derive(Clone, Copy)]
-pub(super) struct Depth {
-    /// Unit vector, outward from the difference.
-    pub outward: DVec3,
-    /// Distance of the support plane of the difference from the origin.
-    pub depth: f64,
-    pub on_triangle: DVec3,
-}
-
-/// The depth if the difference holds the origin inside a tetrahedron.
-pub(super) fn depth<S: SupportMap>(
+/// The contact if the difference holds the origin inside a tetrahedron.
+pub(super) fn crossing_contact<S: SupportMap>(
     difference: &Difference<S>,
     tetrahedron: [Vertex; 4],
     size: f64,
-) -> Option<Depth> {
+) -> Option<ConvexContact> {
     let slack = ROUNDING * size;
     let proved = PROVED[usize::from(S::IS_CURVED)];
     let mut polytope = Polytope::empty(slack);
@@ -63,7 +53,7 @@ pub(super) fn depth<S: SupportMap>(
     }
     let (depth, face) = best?;
     let on_triangle = point_below(&polytope, &face, difference.triangle, 100.0 * slack);
-    Some(Depth { outward: face.normal, depth, on_triangle })
+    Some(ConvexContact::new(on_triangle, -face.normal, -depth))
 }
 
 /// The point of the triangle at the foot of the origin on a face. If the foot is beside the face,
@@ -82,18 +72,18 @@ fn point_below(polytope: &Polytope, face: &Face, corners: &[DVec3; 3], slack: f6
     point
 }
 
-/// The depth if a simplex of the difference holds the origin up to rounding.
+/// The contact if a simplex of the difference holds the origin up to rounding.
 #[cold]
-pub(super) fn touching_depth<S: SupportMap>(
+pub(super) fn touching_contact<S: SupportMap>(
     difference: &Difference<S>,
     simplex: &Simplex,
     size: f64,
-) -> Option<Depth> {
+) -> Option<ConvexContact> {
     let on_triangle = simplex.on_triangle(difference.triangle);
     let flat = |normal: DVec3| {
         let [up, down] = [normal, -normal].map(|u| (difference.farthest(u).point.dot(u), u));
         let (depth, outward) = if down.0 < up.0 { down } else { up };
-        Some(Depth { outward, depth, on_triangle })
+        Some(ConvexContact::new(on_triangle, -outward, -depth))
     };
     let given = simplex.vertices();
     let a = given[0];
@@ -112,7 +102,7 @@ pub(super) fn touching_depth<S: SupportMap>(
     };
     let normal = normal / squared.sqrt();
     match across(difference, a, normal) {
-        (height, d) if height > FLAT * size => depth(difference, [a, b, c, d], size),
+        (height, d) if height > FLAT * size => crossing_contact(difference, [a, b, c, d], size),
         _ => flat(normal),
     }
 }

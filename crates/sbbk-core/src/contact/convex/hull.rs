@@ -61,9 +61,7 @@ impl HullPoints {
         let greatest = greatest.as_dvec3();
         Self { points, triangles, lanes, greatest, faces: OnceLock::new() }
     }
-}
 
-impl HullPoints {
     /// The first of the points that are farthest along a direction, in f64.
     #[cold]
     fn farthest(&self, direction: DVec3) -> DVec3 {

@@ -67,7 +67,7 @@ pub use hull::HullPoints;
 pub use segment::{PointSupport, SegmentSupport};
 pub use support::{SupportMap, TriangleSupport};
 
-use depth::{Depth, depth, touching_depth};
+use depth::{crossing_contact, touching_contact};
 use glamx::DVec3;
 use search::{Outcome, Search};
 
@@ -196,17 +196,14 @@ fn by_search<S: SupportMap>(
     {
         return Some(contact);
     }
-    let depth = match search.run(margin) {
-        Outcome::Far => return None,
+    match search.run(margin) {
+        Outcome::Far => None,
         Outcome::Apart(simplex) => {
             let distance = simplex.squared.sqrt();
             let on_triangle = simplex.on_triangle(triangle);
-            return Some(ConvexContact::new(on_triangle, simplex.nearest / distance, distance));
+            Some(ConvexContact::new(on_triangle, simplex.nearest / distance, distance))
         }
-        Outcome::Crossing(tetrahedron) => depth(difference, tetrahedron, *size),
-        Outcome::Touching(simplex) => touching_depth(difference, &simplex, *size),
-    };
-    depth.map(|Depth { outward, depth, on_triangle }| {
-        ConvexContact::new(on_triangle, -outward, -depth)
-    })
+        Outcome::Crossing(tetrahedron) => crossing_contact(difference, tetrahedron, *size),
+        Outcome::Touching(simplex) => touching_contact(difference, &simplex, *size),
+    }
 }
