@@ -21,9 +21,7 @@ mod update;
 mod ways;
 mod write;
 
-pub(crate) use convex::{
-    ConvexPair, ConvexSearch, ConvexShape, FoundCast, FoundTriangle, Parts, PlacedPart,
-};
+pub(crate) use convex::{ConvexPair, ConvexSearch, ConvexShape, FoundTriangle, Parts, PlacedPart};
 pub(crate) use descents::BvhDescent;
 pub(crate) use field::Field;
 pub(crate) use pose::{MeshPlace, PairPose};

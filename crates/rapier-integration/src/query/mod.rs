@@ -18,10 +18,10 @@ use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{
     ClosestPoints, Contact, ShapeCastHit, ShapeCastStatus, ShapeDistance, ShapeIntersection,
 };
-use sbbk_core::query::{FoundPair, PartPair};
+use sbbk_core::query::{Cast, FoundPair, PartPair};
 use sbbk_core::traverse::Placement;
 
-use crate::pair::{ConvexSearch, FoundCast, FoundTriangle, MeshPlace, PlacedPart};
+use crate::pair::{ConvexSearch, FoundTriangle, MeshPlace, PlacedPart};
 
 /// Two shapes at a pose.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time, on the stack")]
@@ -84,9 +84,9 @@ impl Query<'_> {
         match self {
             Self::Meshes(query) => query.cast(velocity12, options),
             Self::Convex(search) => {
-                let FoundCast { time, found, is_penetrating } =
+                let Cast { time, pair, is_penetrating } =
                     search.cast(velocity12.as_dvec3(), options)?;
-                Some(Found::of_triangle(&found, &search).hit(time, status(is_penetrating)))
+                Some(Found::of_triangle(&pair, &search).hit(time, status(is_penetrating)))
             }
         }
     }

@@ -50,12 +50,12 @@ pub struct CastOptions {
 
 /// An impact.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Cast {
+pub struct Cast<P = FoundPair> {
     /// When, as a multiple of the velocity.
     pub time: f64,
-    /// The triangles and their contact then, mesh 2 *moved*.
-    pub pair: FoundPair,
-    /// True if the triangles are closer than the target distance, or cross, at the start.
+    /// Both parts and their contact then. Mesh 2 has *moved* in a [`FoundPair`].
+    pub pair: P,
+    /// True if the parts are closer than the target distance, or cross, at the start.
     pub is_penetrating: bool,
 }
 

@@ -10,7 +10,7 @@ use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::query::first_that_counts;
+use sbbk_core::query::{Cast, first_that_counts};
 use sbbk_core::surface::area_vector;
 
 use super::contact::{core_contact, core_support};
@@ -30,19 +30,14 @@ const ARRIVED: f64 = 1.0e-8;
 /// Steps at most. Grazing impacts gain a binary digit a step; others take two or three steps.
 const STEP_LIMIT: usize = 100;
 
-/// An impact.
-pub(crate) struct FoundCast {
-    /// Time of the impact, as a multiple of the velocity.
-    pub(crate) time: f64,
-    /// The contact, with the points of each body where they were at the start.
-    pub(crate) found: FoundTriangle,
-    /// True if the bodies cross or are closer than the target distance at the start.
-    pub(crate) is_penetrating: bool,
-}
-
 impl ConvexSearch<'_> {
-    /// The first impact of shape 2 of the pair, which moves by `velocity12` in the frame of shape 1.
-    pub(crate) fn cast(&self, velocity12: DVec3, options: ShapeCastOptions) -> Option<FoundCast> {
+    /// The first impact of shape 2 of the pair, which moves by `velocity12` in the frame of shape 1. The points of each
+    /// body are where they were at the start.
+    pub(crate) fn cast(
+        &self,
+        velocity12: DVec3,
+        options: ShapeCastOptions,
+    ) -> Option<Cast<FoundTriangle>> {
         let ShapeCastOptions { max_time_of_impact, target_distance, .. } = options;
         let target = target_distance.max(0.0);
         let is_possible = max_time_of_impact >= 0.0 && target.is_finite();
@@ -72,12 +67,12 @@ impl ConvexSearch<'_> {
                 let options = ShapeCastOptions { target_distance, ..options };
                 self.cast_triangle(triangle, of_triangle, options, latest)
             };
-            let counts = |cast: &FoundCast| !may_slide || self.is_minimum(&cast.found);
+            let counts = |cast: &Cast<FoundTriangle>| !may_slide || self.is_minimum(&cast.pair);
             let cast = first_that_counts(target_distance, cast, counts)?;
             let time = cast.time as Real;
             let is_less = f64::from(time) < best;
             if is_less {
-                plane.set(Some(self.support_plane(cast.found.contact.normal)));
+                plane.set(Some(self.support_plane(cast.pair.contact.normal)));
             }
             is_less.then_some((time, cast))
         })
@@ -98,7 +93,7 @@ impl ConvexSearch<'_> {
         velocity: DVec3,
         options: ShapeCastOptions,
         latest: f64,
-    ) -> Option<FoundCast> {
+    ) -> Option<Cast<FoundTriangle>> {
         let start = self.placed.in_part(self.mesh.corners(triangle));
         let (size, target) = (self.size(&start), f64::from(options.target_distance.max(0.0)));
         let cast = TriangleCast { search: self, triangle, start, size, velocity, target, latest };
@@ -143,7 +138,7 @@ impl TriangleCast<'_> {
         Some(Apart { time: 0.0, left: width - self.target, normal })
     }
 
-    fn at_start(&self, stop_at_penetration: bool) -> Option<FoundCast> {
+    fn at_start(&self, stop_at_penetration: bool) -> Option<Cast<FoundTriangle>> {
         let contact = self.contact(0.0)?;
         let left = contact.distance - self.target;
         if left > TOUCHING * self.size {
@@ -152,11 +147,11 @@ impl TriangleCast<'_> {
         let approach = self.approach(contact.normal);
         let counts = stop_at_penetration || approach > TOUCHING * self.velocity.length();
         let is_penetrating = contact.distance < self.target;
-        counts.then(|| FoundCast { time: 0.0, found: self.found(contact), is_penetrating })
+        counts.then(|| Cast { time: 0.0, pair: self.found(contact), is_penetrating })
     }
 
     /// Newton's method, from a time at which a plane separates the bodies.
-    fn advance(&self, mut apart: Apart) -> Option<FoundCast> {
+    fn advance(&self, mut apart: Apart) -> Option<Cast<FoundTriangle>> {
         let mut time = self.next_time(&apart)?;
         for _ in 0..STEP_LIMIT {
             let mut contact = self.contact(time)?;
@@ -175,8 +170,7 @@ impl TriangleCast<'_> {
                 let approach = self.approach(contact.normal);
                 let rest = if approach > 0.0 { left.max(0.0) / approach } else { 0.0 };
                 let time = (time + rest).min(self.latest);
-                let found = self.found(contact);
-                return Some(FoundCast { time, found, is_penetrating: false });
+                return Some(Cast { time, pair: self.found(contact), is_penetrating: false });
             }
         }
         None

@@ -24,7 +24,6 @@ mod shape;
 mod triangle_part;
 mod walls;
 
-pub(crate) use cast::FoundCast;
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::{Parts, PlacedPart};
 pub(crate) use search::{ConvexSearch, FoundTriangle};
