@@ -85,15 +85,13 @@ impl Polytope {
     /// included. A badly computed axis only underestimates it. Normals of gaps
     /// within a share of the size of the widest follow the widest.
     pub fn separation(&self, triangle: &[DVec3; 3], tie: f64) -> ConvexTruth {
-        let points = &self.points;
-        let corner = triangle[0];
+        let (points, corner) = (&self.points, triangle[0]);
         let sides = edges(triangle).map(|[a, b]| b - a);
-        let face = sides[0].cross(sides[1]);
         let scale = sides.iter().chain(points).map(|v| v.abs().max_element()).fold(0.0, f64::max);
         let tie = tie * scale;
         let mut widest = f64::NEG_INFINITY;
         let mut found: Vec<(f64, DVec3)> = Vec::new();
-        let mut test = |axis: DVec3| {
+        self.for_each_axis(corner, &sides, scale, |axis: DVec3| {
             let shadow = |all: &[DVec3]| {
                 let heights = all.iter().map(|p| (*p - corner).dot(axis));
                 heights.fold([f64::INFINITY, -f64::INFINITY], |[l, h], x| [l.min(x), h.max(x)])
@@ -105,7 +103,23 @@ impl Polytope {
                     found.push((gap, normal));
                 }
             }
-        };
+        });
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let is_least = |&(gap, normal): &(f64, DVec3)| (gap >= widest - tie).then_some(normal);
+        let normals = found.iter().filter_map(is_least).collect();
+        ConvexTruth { distance: if found.is_empty() { 0.0 } else { widest }, normals }
+    }
+
+    /// Calls `test` with the normals of all possible faces of the Minkowski difference of the hull and a triangle.
+    fn for_each_axis(
+        &self,
+        corner: DVec3,
+        sides: &[DVec3; 3],
+        scale: f64,
+        mut test: impl FnMut(DVec3),
+    ) {
+        let points = &self.points;
+        let face = sides[0].cross(sides[1]);
         let mut cross = |u: DVec3, v: DVec3| perpendicular(u, v).into_iter().for_each(&mut test);
         cross(sides[0], sides[1]);
         for &[p, q] in &self.edges {
@@ -123,7 +137,7 @@ impl Polytope {
         let between = points[0] - corner;
         let own =
             self.edges.iter().map(|[p, q]| q - p).chain([points[points.len() - 1] - points[0]]);
-        for along in sides.into_iter().chain(own) {
+        for along in sides.iter().copied().chain(own) {
             let normal = along.cross(between);
             if normal.length() > 1.0e-12 * scale * scale {
                 cross(along, normal);
@@ -133,10 +147,6 @@ impl Polytope {
             cross(along, DVec3::new(0.6, 0.1, -0.5));
         }
         between.try_normalize().into_iter().for_each(test);
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let is_least = |&(gap, normal): &(f64, DVec3)| (gap >= widest - tie).then_some(normal);
-        let normals = found.iter().filter_map(is_least).collect();
-        ConvexTruth { distance: if found.is_empty() { 0.0 } else { widest }, normals }
     }
 }
 

@@ -211,7 +211,6 @@ impl<'t> Outward<'t> {
         cones: &[DoubleCone],
         mut visit: impl FnMut(DVec3, [f64; 2]) -> ControlFlow<()>,
     ) {
-        let [t1, t2] = &self.triangles;
         let [normal1, normal2] = self.normals;
         let mut consider = |direction: DVec3| {
             let heights = [direction.dot(normal1), -direction.dot(normal2)];
@@ -232,6 +231,18 @@ impl<'t> Outward<'t> {
                 return;
             }
         }
+        self.for_each_product(cones, consider);
+    }
+
+    /// Calls `consider` with the products of edges whose signs lead out of both triangles, until `consider` breaks.
+    #[inline(always)]
+    fn for_each_product(
+        &self,
+        cones: &[DoubleCone],
+        mut consider: impl FnMut(DVec3) -> ControlFlow<()>,
+    ) {
+        let [t1, t2] = &self.triangles;
+        let [normal1, normal2] = self.normals;
         let may_count = |edge: DVec3| cones.iter().all(|cone| cone.may_be_perpendicular(edge));
         let [may_count1, may_count2] = [t1, t2].map(|t| t.edges.map(may_count));
         // Edges run around the normals, against the winding if these do.

@@ -163,20 +163,33 @@ pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
         return apart;
     }
     let corners = from_corner(one, two);
-    let edge =
-        |triangle: usize, i: usize| sub(corners[triangle][(i + 1) % 3], corners[triangle][i]);
     let margin_squared = f32x4::splat(frame.margin * frame.margin);
     let normal1 = cross(corners[0][1], corners[0][2]);
     apart |= separates(normal1, &corners, margin_squared);
     if apart.all() {
         return apart;
     }
-    let normal2 = cross(edge(1, 0), edge(1, 1));
+    let [a, b, c] = corners[1];
+    let normal2 = cross(sub(b, a), sub(c, b));
     apart |= separates(normal2, &corners, margin_squared);
     if apart.all() {
         return apart;
     }
     let lost = lost_by_products(frame, one, two);
+    products_separate(&corners, [normal1, normal2], lost, margin_squared, apart)
+}
+
+/// The lanes of `known`, and those whose triangles a product of edges separates by more than the margin.
+#[inline(always)]
+fn products_separate(
+    corners: &[[V3<f32x4>; 3]; 2],
+    [normal1, normal2]: [V3<f32x4>; 2],
+    lost: f32x4,
+    margin_squared: f32x4,
+    known: f32x4,
+) -> f32x4 {
+    let edge =
+        |triangle: usize, i: usize| sub(corners[triangle][(i + 1) % 3], corners[triangle][i]);
     // Distance of the third corner behind an edge, at most zero, and ahead of it, at least zero.
     let thirds = |normal: V3<f32x4>, edge: V3<f32x4>| {
         let along = dot(normal, edge);
@@ -200,7 +213,7 @@ pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
         a | b | c
     };
     // Written out: a loop loses most of the gain.
-    apart |= separated_by(0);
+    let mut apart = known | separated_by(0);
     if apart.all() {
         return apart;
     }

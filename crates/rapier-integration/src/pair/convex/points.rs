@@ -65,22 +65,7 @@ pub(super) fn contact_points(
         let edge = [corners[usize::from(i)], corners[usize::from(i + 1) % 3]];
         return border_points(edge, [*p, *q], &contact.contact, normal, found);
     }
-    let mut points = FeaturePoints::new();
-    clip_feature(corners, polygon, normal, &mut points);
-    // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces. Points nearer
-    // than the closest ones, or beyond the support point, are not on the shape.
-    let size = polygon.iter().fold(0.0, |size: f64, x| size.max(x.abs().max_element()));
-    let slack = f64::from(gamma(64)) * size;
-    let mut has_closest = false;
-    for point in &points {
-        let beyond = normal.dot(on_shape - point.on_shape);
-        if is_own && point.distance < distance - slack || is_neighbours && beyond > slack {
-            continue;
-        }
-        has_closest |= point.distance <= distance + slack;
-        let distance = if is_own { point.distance.max(distance) } else { point.distance };
-        found(PointPair { distance, ..named(point, &feature) });
-    }
+    let has_closest = overlap_points(corners, &feature, contact, normal, is_own, &mut found);
     if has_rim && let ConvexShape::Features { map, .. } = shape {
         rim_points(corners, map, on_shape, normal, polygon, equal_depth).for_each(&mut found);
     }
@@ -92,6 +77,38 @@ pub(super) fn contact_points(
     } else if is_neighbours && !is_cuboid {
         on_face(corners, on_shape, normal).into_iter().for_each(found);
     }
+}
+
+/// Calls `found` with the corners of the overlap of a triangle and a feature. Returns true if one is as near as the closest points.
+/// `is_own`: the normal is that of the closest points, and no corner is nearer.
+#[inline(always)]
+fn overlap_points(
+    corners: &[DVec3; 3],
+    feature: &PolygonalFeature,
+    PartContact { contact, source, .. }: &PartContact,
+    normal: DVec3,
+    is_own: bool,
+    mut found: impl FnMut(PointPair),
+) -> bool {
+    let polygon = &feature.vertices.map(|corner| corner.as_dvec3())[..feature.num_vertices];
+    let mut points = FeaturePoints::new();
+    clip_feature(corners, polygon, normal, &mut points);
+    // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces. Points nearer
+    // than the closest ones, or beyond the support point, are not on the shape.
+    let size = polygon.iter().fold(0.0, |size: f64, x| size.max(x.abs().max_element()));
+    let slack = f64::from(gamma(64)) * size;
+    let is_neighbours = *source == NormalSource::Neighbour;
+    let mut has_closest = false;
+    for point in &points {
+        let beyond = normal.dot(contact.on_shape - point.on_shape);
+        if is_own && point.distance < contact.distance - slack || is_neighbours && beyond > slack {
+            continue;
+        }
+        has_closest |= point.distance <= contact.distance + slack;
+        let distance = if is_own { point.distance.max(contact.distance) } else { point.distance };
+        found(PointPair { distance, ..named(point, feature) });
+    }
+    has_closest
 }
 
 /// Other points of an edge along a border may be farther from the border than the nearest one, by this share. Higher: rods that stick

@@ -148,6 +148,25 @@ struct Slope {
     reach: f64,
 }
 
+/// An edge, seen in the plane across it. One axis is level, and the other one leads up.
+struct AcrossEdge {
+    axes: [DVec3; 2],
+    /// Coordinates of the edge.
+    at: [f64; 2],
+    /// Coordinates of the vector to the third corner.
+    to_third: [f64; 2],
+    /// Greatest distance that rounding makes.
+    rounding: f64,
+}
+
+impl AcrossEdge {
+    /// Returns true if the third corner is not below the edge. It is not below an edge that touches.
+    #[inline(always)]
+    fn is_lowest(&self, x: f64, y: f64) -> bool {
+        x * self.to_third[0] + y * self.to_third[1] >= -self.rounding
+    }
+}
+
 impl<const IS_CONE: bool> TurnedSupport<IS_CONE> {
     /// Flat ends: the first ones of the rims.
     const ENDS: usize = if IS_CONE { 1 } else { 2 };
@@ -273,7 +292,7 @@ impl<const IS_CONE: bool> TriangleAndSolid<'_, TurnedSupport<IS_CONE>> {
 
     /// The gaps of the slope and an edge, and of the rims and that edge.
     #[inline(always)]
-    fn sides_and_edge(&self, j: usize, &Slope { rise, reach, .. }: &Slope, best: &mut Best) {
+    fn sides_and_edge(&self, j: usize, slope: &Slope, best: &mut Best) {
         let TurnedSupport { radius, half_height } = *self.solid;
         let [start, end, third] = [0, 1, 2].map(|i| self.triangle[(j + i) % 3]);
         let edge = self.edges[j];
@@ -299,30 +318,48 @@ impl<const IS_CONE: bool> TriangleAndSolid<'_, TurnedSupport<IS_CONE>> {
         let level = level / level_squared.sqrt();
         let up = level.cross(edge) / squared.sqrt();
         let up = if up.y < 0.0 { -up } else { up };
-        // Both coordinates across the edge, of its position and of the vector to the third corner.
-        // The third corner is not below an edge that touches.
-        let [at_level, at_up] = [start.dot(level), start.dot(up)];
-        let [to_level, to_up] = [(third - start).dot(level), (third - start).dot(up)];
-        let is_lowest = |x: f64, y: f64| x * to_level + y * to_up >= -self.doubtful();
+        let axes = [level, up];
+        let [at, to_third] = [start, third - start].map(|way| axes.map(|axis| way.dot(axis)));
+        let across = AcrossEdge { axes, at, to_third, rounding: self.doubtful() };
+        self.slope_and_edge(j, &across, slope, best);
+        self.rims_and_edge(j, &across, best);
+    }
+
+    /// The gaps of the slope and an edge.
+    #[inline(always)]
+    fn slope_and_edge(
+        &self,
+        j: usize,
+        across: &AcrossEdge,
+        &Slope { rise, reach, .. }: &Slope,
+        best: &mut Best,
+    ) {
+        let AcrossEdge { axes: [level, up], at: [at_level, at_up], .. } = *across;
         let sine = rise / up.y;
         if sine <= 1.0 {
             let cosine = (1.0 - sine * sine).sqrt();
             for x in [cosine, -cosine] {
                 let bound = at_level * x + at_up * sine - reach;
-                if bound > best.0.width && is_lowest(x, sine) {
+                if bound > best.0.width && across.is_lowest(x, sine) {
                     best.take(self.gap(level * x + up * sine), Part::Slope(j));
                 }
             }
         }
+    }
+
+    /// The gaps of the rims and an edge.
+    #[inline(always)]
+    fn rims_and_edge(&self, j: usize, across: &AcrossEdge, best: &mut Best) {
+        let AcrossEdge { axes: [level, up], at: [at_level, at_up], .. } = *across;
         for (height, side) in self.solid.rims() {
             let coordinates = [-at_level, (height * up.y - at_up) * side];
             // The directions between these two.
             let x = if coordinates[0] < 0.0 { 1.0 } else { -1.0 };
-            if !(is_lowest(x, 0.0) || is_lowest(0.0, side)) {
+            if !(across.is_lowest(x, 0.0) || across.is_lowest(0.0, side)) {
                 continue;
             }
-            if let Some([x, y]) = rim_and_edge(coordinates, up.y, radius)
-                && is_lowest(x, y * side)
+            if let Some([x, y]) = rim_and_edge(coordinates, up.y, self.solid.radius)
+                && across.is_lowest(x, y * side)
             {
                 best.take(self.gap(level * x + up * (y * side)), Part::Rim(j));
             }

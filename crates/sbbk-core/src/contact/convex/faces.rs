@@ -159,28 +159,20 @@ impl HullFaces {
             let [of_p, of_q] = [p, q].map(|face| marks[usize::from(face)]);
             let crossed = (of_p ^ of_q) & (of_p | of_q) >> 3;
             for j in bits(crossed.into()) {
-                let next = NEXT[j];
                 let nearer = |i: usize| {
                     let [p, q] = [p, q]
                         .map(|f| depths[usize::from(f / 4)][i].to_array()[usize::from(f % 4)]);
                     p.min(q)
                 };
-                let can_be_less = nearer(j) < most && nearer(next) < most;
+                let can_be_less = nearer(j) < most && nearer(NEXT[j]) < most;
                 if !can_be_less {
                     continue;
                 }
-                let (&[start, along], side) = (edge, sides[j]);
-                let product = side.cross(along);
-                // The side falls below the first face, or the second.
-                let outward = if of_p >> j & 1 == 1 { product } else { -product };
-                let length_squared = outward.length_squared();
-                let shortest = PARALLEL * PARALLEL * side.length_squared() * along.length_squared();
-                // The rest of the triangle must be on the outer side of the edge.
-                let is_face = length_squared > shortest && outward.dot(sides[NEXT[next]]) <= 0.0;
-                if !is_face {
+                let Some(outward) = face_of_edges(&sides, j, edge[1], of_p >> j & 1 == 1) else {
                     continue;
-                }
-                let depth = (start - triangle[j]).dot(outward);
+                };
+                let length_squared = outward.length_squared();
+                let depth = (edge[0] - triangle[j]).dot(outward);
                 if depth <= 0.0 {
                     return None;
                 }
@@ -285,6 +277,18 @@ impl HullFaces {
         }
         (low <= high).then_some(0.5 * (low + high))
     }
+}
+
+/// Returns the outward product of a side of a triangle and an edge. `None` if they are nearly parallel, or if the rest of the
+/// triangle is on the inner side. `falls_first`: the side falls below the first face of the edge, not the second.
+#[inline(always)]
+fn face_of_edges(sides: &[DVec3; 3], j: usize, along: DVec3, falls_first: bool) -> Option<DVec3> {
+    let side = sides[j];
+    let product = side.cross(along);
+    let outward = if falls_first { product } else { -product };
+    let shortest = PARALLEL * PARALLEL * side.length_squared() * along.length_squared();
+    let is_outside = outward.dot(sides[NEXT[NEXT[j]]]) <= 0.0;
+    (outward.length_squared() > shortest && is_outside).then_some(outward)
 }
 
 /// Depth of each corner of a triangle below each face.

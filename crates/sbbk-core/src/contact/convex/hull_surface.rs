@@ -35,43 +35,16 @@ impl HullSurface {
     ///
     /// A surface without concave edges whose face count excludes handles is convex everywhere.
     pub fn from_triangles(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
-        const NONE: u8 = u8::MAX;
-        let (count, slack) = (points.len(), ROUNDING * size(points.iter().copied()));
-        let is_closed = (4..=POINTS).contains(&count) && triangles.len() == 2 * count - 4;
-        if !is_closed {
-            return None;
-        }
-        // The face at the edge between two points.
-        let mut at_edge = vec![NONE; count * count];
-        let mut is_used = [false; POINTS];
-        let mut surface = Self::empty();
-        for (i, triangle) in (0..).zip(triangles) {
-            let [a, b, c] = triangle.map(|corner| corner as usize);
-            if a.max(b).max(c) >= count {
-                return None;
-            }
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                is_used[from] = true;
-                let place = &mut at_edge[from * count + to];
-                if *place != NONE {
-                    return None;
-                }
-                *place = i;
-            }
-            let corners = [points[a], points[b], points[c]];
+        let slack = ROUNDING * size(points.iter().copied());
+        let neighbors = neighbors_of(points.len(), triangles)?;
+        let mut surface = Self { neighbors, ..Self::empty() };
+        for triangle in triangles {
+            let corners = triangle.map(|corner| points[corner as usize]);
             let (normal, squared) = thin_normal(corners)?;
             let normal = normal / squared.sqrt();
             let heights = corners.map(|corner| corner.dot(normal));
             surface.planes.push((normal, heights[0].max(heights[1]).max(heights[2])));
             surface.corners.push(corners);
-        }
-        if !is_used[..count].iter().all(|is_used| *is_used) {
-            return None;
-        }
-        for triangle in triangles {
-            let [a, b, c] = triangle.map(|corner| corner as usize);
-            let across = [(b, a), (c, b), (a, c)].map(|(from, to)| at_edge[from * count + to]);
-            surface.neighbors.push(across);
         }
         for (&(normal, height), neighbors) in surface.planes.iter().zip(&surface.neighbors) {
             for &neighbor in neighbors {
@@ -125,6 +98,35 @@ impl HullSurface {
     fn empty() -> Self {
         Self { planes: ArrayVec::new(), corners: Vec::new(), neighbors: Vec::new() }
     }
+}
+
+/// Returns the triangle across each edge: 255 at a border. `None` if triangles share a directed edge, leave out a point, or are
+/// not as many as a closed surface has.
+fn neighbors_of(count: usize, triangles: &[[u32; 3]]) -> Option<Vec<[u8; 3]>> {
+    const NONE: u8 = u8::MAX;
+    let is_closed = (4..=POINTS).contains(&count) && triangles.len() == 2 * count - 4;
+    if !is_closed || triangles.as_flattened().iter().any(|&corner| corner as usize >= count) {
+        return None;
+    }
+    let edges = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|corner| corner as usize);
+        [[a, b], [b, c], [c, a]]
+    };
+    // The triangle at the edge between two points.
+    let mut at_edge = vec![NONE; count * count];
+    let mut is_used = [false; POINTS];
+    for (i, triangle) in (0..).zip(triangles) {
+        for [from, to] in edges(triangle) {
+            is_used[from] = true;
+            let place = &mut at_edge[from * count + to];
+            if std::mem::replace(place, i) != NONE {
+                return None;
+            }
+        }
+    }
+    let across = |triangle: &[u32; 3]| edges(triangle).map(|[from, to]| at_edge[to * count + from]);
+    let are_all_used = is_used[..count].iter().all(|is_used| *is_used);
+    are_all_used.then(|| triangles.iter().map(across).collect())
 }
 
 /// The largest coordinate, or a bit more.

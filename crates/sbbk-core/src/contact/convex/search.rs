@@ -111,11 +111,10 @@ impl<'a, S: SupportMap> Search<'a, S> {
             if is_far(bound, squared) {
                 return Outcome::Far;
             }
-            let is_known = simplex.vertices().iter().any(|v| v.point == new.point);
             if is_proved::<S>(squared, squared - bound, *size) {
                 return Outcome::Apart(simplex);
             }
-            if is_known {
+            if simplex.vertices().iter().any(|v| v.point == new.point) {
                 return self.stuck(simplex, new);
             }
             match simplex.add(new) {

@@ -59,8 +59,6 @@ pub(super) trait Solid: SupportMap {
             return high.near;
         }
         let mut guesses = self.breaks(start, edge).into_iter();
-        // Cubic steps in turns of the distance and of its square: one has a smooth minimum. A step halves the part of the
-        // edge if three have not.
         let mut most = 1.0;
         for step in 0..=STEPS {
             if low.bound(&high) > least {
@@ -68,11 +66,7 @@ pub(super) trait Solid: SupportMap {
             }
             let is_between = |t: &f64| *t > low.t && *t < high.t;
             let halfway = 0.5 * (low.t + high.t);
-            let t = guesses.find(is_between).unwrap_or_else(|| match step {
-                _ if step % 3 == 0 && high.t - low.t > most => halfway,
-                _ if step % 2 == 0 => minimum(low.squared(), high.squared()),
-                _ => minimum(low.distance(), high.distance()),
-            });
+            let t = guesses.find(is_between).unwrap_or_else(|| low.step(&high, step, most));
             if step % 3 == 0 {
                 most = 0.5 * (high.t - low.t);
             }
@@ -99,6 +93,19 @@ struct EdgePoint {
 }
 
 impl EdgePoint {
+    /// Returns the place of the next step between two points, in turns by the distance and by its square: one has a smooth
+    /// minimum. A step halves the part of the edge if three have not made it shorter than `most`.
+    #[inline(always)]
+    fn step(&self, high: &Self, step: u32, most: f64) -> f64 {
+        if step.is_multiple_of(3) && high.t - self.t > most {
+            0.5 * (self.t + high.t)
+        } else if step.is_multiple_of(2) {
+            minimum(self.squared(), high.squared())
+        } else {
+            minimum(self.distance(), high.distance())
+        }
+    }
+
     /// Returns a lower bound of the squared distance between two points. The distance is convex: it is above both
     /// tangents.
     #[inline(always)]
@@ -206,11 +213,7 @@ impl<'a, S: Solid> TriangleAndSolid<'a, S> {
                 return Some(OffsetPoint { point: over, from_shape, squared: width * width });
             }
         }
-        let [a, b, c] = [
-            OffsetPoint::of(self.solid, self.triangle[0]),
-            OffsetPoint::of(self.solid, self.triangle[1]),
-            OffsetPoint::of(self.solid, self.triangle[2]),
-        ];
+        let [a, b, c] = self.triangle.map(|corner| OffsetPoint::of(self.solid, corner));
         let mut nearest = a;
         for other in [b, c] {
             if other.squared < nearest.squared {
