@@ -210,6 +210,54 @@ fn casts_that_start_within_the_target_distance_pass_nothing() {
     assert!(crossings > 400, "{crossings} cross");
 }
 
+/// A cast that starts beyond the target distance ends there, whether or not it would stop at a penetration. Would catch triangles at
+/// a gap of the mesh of which each leaves the impact to the other one.
+#[test]
+fn casts_from_afar_end_at_the_target_distance_over_gaps() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(23);
+    let bodies: [&dyn Shape; 5] = [
+        &Ball::new(0.3),
+        &Capsule::new_y(0.3, 0.2),
+        &Cylinder::new(0.3, 0.2),
+        &Cuboid::new(Vec3::new(0.2, 0.35, 0.2)),
+        &shape(&mesh::ball(0.3, 3)),
+    ];
+    let mut hits = 0;
+    for case in 0..600 {
+        let gap = [0.0, 1e-5, 1e-4, 1e-3, 1e-2][case / 5 % 5];
+        let mut within = |most: f32| most * (2.0 * random.rand_float() - 1.0);
+        let mut ground = mesh::floor(2.0, 8);
+        ground.vertices.iter_mut().for_each(|at| at.y += within(0.15));
+        let ground = shape(&mesh::unwelded(&ground, gap, case as u64));
+        let body = bodies[case % bodies.len()];
+        let start = Vec3::new(within(0.3), 1.0, within(0.3));
+        let velocity = Vec3::new(within(0.5), -1.0, within(0.5));
+        let start = Pose3::from_parts(start, rotation(&mut random));
+        let question = Question::new(&ground, body, start);
+        let time = |question: Question<'_>, stop_at_penetration| {
+            let options = ShapeCastOptions {
+                target_distance: 0.05,
+                stop_at_penetration,
+                ..ShapeCastOptions::with_max_time_of_impact(2.0)
+            };
+            let hit = LinearCast { question, velocity, options }.ask(&dispatcher);
+            hit.map(|hit| hit.time_of_impact)
+        };
+        for is_flipped in [false, true] {
+            let times = [true, false].map(|stops| time(question.flipped(is_flipped), stops));
+            let [Some(truth), Some(told)] = times else {
+                assert_eq!(times, [None; 2], "{case}");
+                continue;
+            };
+            hits += 1;
+            let says = format!("{case}, {:?}, gap {gap}", body.shape_type());
+            assert!((told - truth).abs() < 1e-5, "{says}: {told}, not {truth}");
+        }
+    }
+    assert!(hits > 1000, "{hits} hit");
+}
+
 /// Starts that cross: stock's statuses, and the way out.
 #[test]
 fn casts_that_start_inside_have_stocks_status() {

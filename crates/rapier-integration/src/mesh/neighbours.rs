@@ -379,13 +379,13 @@ impl Clone for Neighbours {
 /// slide along them. Lower: rounding hides impacts of parallel faces.
 const IMPACT_RISE: f64 = 1.0e-4;
 
-/// Returns true if no triangle at the place of an impact leads towards the other body, which is nearest in a unit
-/// direction.
-pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, direction: DVec3) -> bool {
+/// Returns true if no triangle at the place of an impact leads towards the other body. `other`: the unit direction and the
+/// distance of that body.
+pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, other: (DVec3, f64)) -> bool {
     let (known, memo) = Default::default();
     let twins = Twins::Near(&known);
     let facets = MeshFacets { mesh, twins, memo: &memo, declared: Some(Side::Sheet) };
-    !Around { facets, side: Side::Sheet }.rises(triangle, place, direction, IMPACT_RISE)
+    !Around { facets, side: Side::Sheet }.rises(triangle, place, other, IMPACT_RISE)
 }
 
 /// Returns the box between two corners in f32, grown by the rounding.

@@ -146,14 +146,14 @@ impl<'a> MeshQuery<'a> {
     /// wall within the target distance comes to the next triangles of the wall all the time.
     fn is_minimum(&self, Cast { time, pair, .. }: &Cast, velocity: Vector) -> bool {
         let FoundPair { triangle1, triangle2, contact, origin, .. } = pair;
-        let TriangleContact { normal, features, point1, point2, .. } = *contact;
+        let TriangleContact { normal, distance, features, point1, point2 } = *contact;
         let before = point2 - velocity.as_dvec3() * *time;
         let [mesh1, mesh2] = self.meshes.each_ref().map(|mesh| mesh.mesh);
         let place2 = self.placement.to_frame2(before, *origin);
         let normal2 = (self.placement.inverse * -normal).normalize_or_zero();
         features.is_crossing()
-            || is_minimum(mesh1, *triangle1, origin.as_dvec3() + point1, normal)
-                && is_minimum(mesh2, *triangle2, place2, normal2)
+            || is_minimum(mesh1, *triangle1, origin.as_dvec3() + point1, (normal, distance))
+                && is_minimum(mesh2, *triangle2, place2, (normal2, distance))
     }
 
     pub(super) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {

@@ -13,6 +13,7 @@ use super::slopes::{
 };
 use super::triangle::{area_vector, seam, touches};
 use crate::contact::Feature;
+use crate::contact::convex::{PointSupport, convex_contact};
 use crate::simd::each;
 
 /// The surface around a triangle, which tests directions against the one-ring of a vertex or an edge, or
@@ -32,6 +33,10 @@ const CROWD: usize = 64;
 /// Distance from the ends of an edge at which other triangles are sought along the edge, as a share of its length. Higher: a T-junction near
 /// an end makes a border. Lower: edges of slivers go on in their neighbours.
 const OFF_ENDS: f64 = 0.1;
+
+/// Share of the coordinates that rounding to f32 may open between triangles that touch. Higher: triangles across a gap count as
+/// touching. Lower: casts stop at T-junctions of a wall that they slide along.
+const ROUNDING: f64 = 1.0e-6;
 
 impl<F: Facets> Around<F> {
     /// True if no triangle of the one-ring of a feature comes nearer to the other body in a unit
@@ -104,12 +109,32 @@ impl<F: Facets> Around<F> {
         (slopes.rise, (count <= LONG).then_some(bend), signs)
     }
 
-    /// Returns true if a triangle that touches a place on a triangle rises towards a unit direction, by a slope whose
-    /// sine is above `most`. Looks at few triangles where a crowd meets.
-    pub fn rises(&self, triangle: u32, place: DVec3, direction: DVec3, most: f64) -> bool {
+    /// Returns true if a triangle that touches a place on a triangle rises towards a point, by a slope whose
+    /// sine is above `most`. A triangle across a gap rises if it is nearer to the point than the place is. `direction` and `distance` are
+    /// those of the point, seen from the place. Looks at few triangles where a crowd meets.
+    pub fn rises(
+        &self,
+        triangle: u32,
+        place: DVec3,
+        (direction, distance): (DVec3, f64),
+        most: f64,
+    ) -> bool {
         let mut slopes = Slopes::default();
-        self.visit_touching(triangle, place, CROWD, |_, _, ends| {
-            ends.for_each(|end| slopes.add(end, direction));
+        let rounding = ROUNDING * place.abs().max_element();
+        let nearest = |corners: &[DVec3; 3], point: DVec3| {
+            convex_contact(corners, &PointSupport(point), f64::INFINITY).map(|it| it.on_triangle)
+        };
+        self.visit_touching(triangle, place, CROWD, |_, corners, ends| {
+            let is_across = |at: DVec3| at.length_squared() > rounding * rounding;
+            if nearest(corners, DVec3::ZERO).is_some_and(is_across) {
+                let point = nearest(corners, distance * direction).unwrap_or_default();
+                // By how much the square of the distance is less.
+                let gain = 2.0 * distance * direction.dot(point) - point.length_squared();
+                let least = most * distance * point.length();
+                slopes.rise = if gain > least { f64::INFINITY } else { slopes.rise };
+            } else {
+                ends.for_each(|end| slopes.add(end, direction));
+            }
         });
         slopes.rise > most * most
     }

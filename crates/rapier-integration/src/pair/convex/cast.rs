@@ -82,8 +82,8 @@ impl ConvexSearch<'_> {
     fn is_minimum(&self, found: &FoundTriangle) -> bool {
         let [place, _] = found.points(&self.placed).map(|point| point.as_dvec3());
         let [direction, _] = self.placed.directions(found.contact.normal);
-        found.contact.distance <= 0.0
-            || is_minimum(self.mesh.mesh, found.triangle, place, direction)
+        let distance = found.contact.distance;
+        distance <= 0.0 || is_minimum(self.mesh.mesh, found.triangle, place, (direction, distance))
     }
 
     /// The first impact of a triangle that moves in the frame of the shape.
