@@ -210,8 +210,8 @@ fn casts_that_start_within_the_target_distance_pass_nothing() {
     assert!(crossings > 400, "{crossings} cross");
 }
 
-/// A cast that starts beyond the target distance ends there, whether or not it would stop at a penetration. Would catch triangles at
-/// a gap of the mesh of which each leaves the impact to the other one.
+/// A cast that starts beyond the target distance ends there, whether or not it would stop at a penetration. Would catch an impact
+/// that each of two triangles at a gap leaves to the other one.
 #[test]
 fn casts_from_afar_end_at_the_target_distance_over_gaps() {
     let dispatcher = SbbkDispatcher::default();

@@ -379,8 +379,8 @@ impl Clone for Neighbours {
 /// slide along them. Lower: rounding hides impacts of parallel faces.
 const IMPACT_RISE: f64 = 1.0e-4;
 
-/// Returns true if no triangle at the place of an impact leads towards the other body. `other`: the unit direction and the
-/// distance of that body.
+/// Returns true if no triangle at the place of an impact leads towards the other body. `other` has the unit direction to that body,
+/// and its distance.
 pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, other: (DVec3, f64)) -> bool {
     let (known, memo) = Default::default();
     let twins = Twins::Near(&known);

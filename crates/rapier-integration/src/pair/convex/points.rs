@@ -80,7 +80,7 @@ pub(super) fn contact_points(
 }
 
 /// Calls `found` with the corners of the overlap of a triangle and a feature. Returns true if one is as near as the closest points.
-/// With `is_own` the normal is that of the closest points, and no corner is nearer.
+/// No corner is nearer than the closest points if the normal is theirs (`is_own`).
 #[inline(always)]
 fn overlap_points(
     corners: &[DVec3; 3],
