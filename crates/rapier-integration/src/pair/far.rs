@@ -25,7 +25,7 @@ const STEPS: usize = 32;
 
 /// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher: thin plates with
 /// soft CCD turn through sheets. Lower: small bodies are stopped by triangles ahead.
-const SAME_DIRECTION: f64 = 0.97;
+const SAME_FAR_DIRECTION: f64 = 0.97;
 
 /// Triangles of each mesh from which rays look ahead. Higher: more time. Lower: small parts of fine meshes are met late.
 const AHEAD: usize = 128;
@@ -70,11 +70,11 @@ impl TriangleShapes<'_> {
         }
     }
 
-    /// Removes contacts beyond the filter distance, except those in the direction of a near contact or of a local
-    /// minimum of the distance. Shapes that cross also lose contacts that lead into solids: those would hold them in each
-    /// other. If no contact is near, the smaller shape may turn before it meets the larger one, or rests on a contact
-    /// skin. Only local minima of the larger one stay then; without any, all contacts stay. `directions` is memory.
-    pub(super) fn reject_aside(
+    /// Removes most contacts beyond the filter distance. If a contact is near, far ones stay in the directions of near contacts and
+    /// of local minima. Between shapes that cross, those that lead into solids go, as they would hold the shapes in each other. If
+    /// no contact is near, the local minima of the larger shape stay. Without these, all contacts stay, as the smaller shape may turn
+    /// before it meets the larger one. `directions` is memory.
+    pub(super) fn thin_out_far(
         &self,
         directions: &mut Vec<DVec3>,
         islands: &OverlapIslands,
@@ -106,7 +106,7 @@ impl TriangleShapes<'_> {
         contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
             let leads_inside = |filter: &SurfaceFilter<'_>| filter.leads_inside(contact);
             is_near(contact)
-                || has_like(directions, contact.normal, SAME_DIRECTION)
+                || has_like(directions, contact.normal, SAME_FAR_DIRECTION)
                     && !(is_overlap && self.with_filter(*pair, leads_inside) == Some(true))
         });
     }

@@ -201,11 +201,11 @@ impl OverlapIslands {
 
     /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
     /// the wrong way. `small`: depth of bodies at rest.
-    /// `parts` tells if a way of a length parts two triangles, and both surfaces end there.
+    /// `is_parted` tells if a way of a length parts two triangles, and both surfaces end there.
     pub(super) fn finish_first_pass(
         &mut self,
         small: f64,
-        parts: impl Fn([u32; 2], DVec3, f64) -> bool,
+        is_parted: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
         let is_good = |crossing: &Crossing| crossing.is_fine() && crossing.far_depth() == 0.0;
         self.one_ways.clear();
@@ -214,7 +214,7 @@ impl OverlapIslands {
             return false;
         }
         self.join();
-        self.keep_one_way(small, parts);
+        self.keep_one_way(small, is_parted);
         if self.crossings.iter().all(is_good) {
             return false;
         }

@@ -60,8 +60,10 @@ pub(crate) trait PairQuery {
     /// Returns the distance up to which all contacts are found.
     fn reach(&self) -> Real;
 
-    /// Adds all contacts at once if these cost less than keeping candidates. Returns true if so. Called
-    /// first in each query.
+    /// Begins a query: forgets what the last one left in the memory of the thread.
+    fn begin(&self, _scratch: &mut Self::Scratch) {}
+
+    /// Adds all contacts at once if these cost less than keeping candidates. Returns true if so.
     fn contacts_without_candidates(
         &mut self,
         _counts: &mut DescentCounts,

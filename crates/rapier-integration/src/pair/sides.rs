@@ -89,8 +89,8 @@ impl TriangleShapes<'_> {
     }
 }
 
-/// Part of a body that may stick out of a room that holds it, in half heights of the body. If faces lead in, the other part is
-/// enough. Higher: bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
+/// Half heights of a body that may stick out of a room that holds it. A room whose faces lead in holds a body whose middle is so
+/// far behind a wall. Higher: bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
 const STICKS_OUT: Real = 0.5;
 
 /// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in tenths of its

@@ -7,9 +7,8 @@
 //! Stock Parry finds no contacts of a mesh and a height field. Triangles of a field have the numbers that Parry gives them in
 //! contacts with convex shapes.
 //!
-//! A pair keeps candidates, and Rapier drops them when a shape was edited. For hosts that do not,
-//! another field, scale or flag is noticed at once. A removed triangle is noticed when the pair moves, and an added one at the
-//! next descent.
+//! Hosts drop the workspace of a pair when they edit a shape. If a host does not, another field, scale or flag is noticed at once.
+//! A removed triangle is noticed when the pair moves, and an added one at the next descent.
 
 mod overlaps;
 
@@ -313,9 +312,9 @@ impl PairQuery for TriangleQuery<'_> {
         if limits.reach < f64::from(self.shapes.pose.prediction) {
             self.shapes.add_far(!*is_near, lead_one_way, clipped, contacts);
         } else if limits.reach > self.shapes.filter_distance {
-            self.shapes.reject_aside(directions, islands, contacts);
+            self.shapes.thin_out_far(directions, islands, contacts);
         }
-        self.part_crossing(islands, contacts);
+        self.add_of_crossing(islands, contacts);
         self.shapes.reject_through(&islands.crossings, contacts);
         if contacts.is_empty() {
             let held = HeldMesh::of(&self.shapes);

@@ -1,13 +1,13 @@
 //! The pipeline of a contact query: from the pose of a pair to its manifolds.
 //!
-//! 1. The state of the pair comes from the host's workspace ([`state_in`]).
-//! 2. A change of the shapes since the last query drops what no longer holds.
-//! 3. An equal pose leaves the manifolds as they are. Shapes that were apart, and have moved by less than their distance,
-//!    have none.
-//! 4. If the candidates of the last descent no longer serve, a descent finds new ones. If there were none, the distance of
-//!    the shapes may tell for how long there will be none.
-//! 5. Candidates in reach become contacts ([`PairQuery::contacts`]).
-//! 6. Contacts become manifolds: one each, or a few for all ([`write`](super::write)).
+//! * The state of the pair comes from the host's workspace ([`state_in`]).
+//! * A change of the shapes since the last query drops what no longer holds.
+//! * An equal pose leaves the manifolds as they are. Shapes that were apart, and have moved by less than their distance,
+//!   have none.
+//! * If the candidates of the last descent no longer serve, a descent finds new ones. If there were none, the distance of
+//!   the shapes may tell for how long there will be none.
+//! * Candidates in reach become contacts ([`PairQuery::contacts`]).
+//! * Contacts become manifolds: one each, or a few for all ([`write`](super::write)).
 
 use std::sync::Arc;
 
@@ -80,6 +80,7 @@ fn update_contacts<Q: PairQuery>(
     QueryMemory { scratch, contacts, .. }: &mut QueryMemory<Q::Scratch, Q::Contact>,
 ) -> QueryOutcome {
     contacts.clear();
+    query.begin(scratch);
     if query.contacts_without_candidates(counts, scratch, contacts) {
         memory.forget();
         return QueryOutcome::Descended;

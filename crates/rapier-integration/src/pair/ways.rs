@@ -57,10 +57,10 @@ impl Ways {
         group: usize,
         normal: DVec3,
         small: f64,
-        mut parts: impl FnMut(DVec3, f64) -> bool,
+        mut is_parted: impl FnMut(DVec3, f64) -> bool,
     ) {
         self.of(group).retain(|(way, depth)| {
-            *depth <= small && (way.dot(normal) >= SAME_DIRECTION || parts(*way, *depth))
+            *depth <= small && (way.dot(normal) >= SAME_DIRECTION || is_parted(*way, *depth))
         });
     }
 

@@ -16,7 +16,7 @@ use super::shape::ConvexShape;
 
 /// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
 /// stumble over walls within a mesh.
-pub(super) const SAME_WAY: f64 = 0.7;
+pub(super) const SAME_PUSH: f64 = 0.7;
 
 /// The contact of a triangle and a part without its rounding radius, in the frame of the part.
 #[derive(Copy, Clone)]

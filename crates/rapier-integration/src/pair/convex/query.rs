@@ -186,15 +186,17 @@ impl PairQuery for ConvexQuery<'_> {
         (self.pair.pose.prediction.max(0.0) + gamma(64) * largest).min(Real::MAX)
     }
 
-    /// Forgets the placed parts of the last query. Serves balls, whose contacts and box tests cost less than to
-    /// keep candidates.
+    fn begin(&self, scratch: &mut ConvexScratch) {
+        scratch.parts.clear();
+    }
+
+    /// Serves balls, whose contacts and box tests cost less than to keep candidates.
     fn contacts_without_candidates(
         &mut self,
         counts: &mut DescentCounts,
         scratch: &mut ConvexScratch,
         contacts: &mut ContactList<PartContact>,
     ) -> bool {
-        scratch.parts.clear();
         let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
         let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
         let part = Part { pose: None, shape, cone: None };

@@ -10,7 +10,7 @@ use sbbk_core::surface::strays::seam;
 use sbbk_core::surface::{area_vector, longest_side};
 use sbbk_core::volumes::Sphere;
 
-use super::contact::{KeptHull, NormalSource, PartContact, SAME_WAY, core_contact, core_support};
+use super::contact::{KeptHull, NormalSource, PartContact, SAME_PUSH, core_contact, core_support};
 use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, is_over, ray_length};
@@ -294,7 +294,7 @@ impl TrianglePartPair<'_> {
         let corners = &self.placed.in_part(self.corners);
         let wall = self.face_contact(corners)?;
         let depth = f64::from(self.part.shape.radius()) - floor.distance;
-        if depth <= 0.0 || wall.normal.dot(floor.normal) >= SAME_WAY {
+        if depth <= 0.0 || wall.normal.dot(floor.normal) >= SAME_PUSH {
             return None;
         }
         // Each triangle is in front of the other one.
@@ -350,7 +350,7 @@ fn outward(corners @ [a, ..]: &[DVec3; 3], other: &[DVec3; 3]) -> Option<DVec3> 
 }
 
 /// Returns a triangle that halves a wedge and ends at its edge. It reaches beyond a ball. `points` are on the sides with
-/// these normals. `None` if both push the [same way](SAME_WAY).
+/// these normals. `None` if both push the [same way](SAME_PUSH).
 fn within_edge(
     ball: &Sphere,
     normals @ [one, other]: [DVec3; 2],
@@ -358,7 +358,7 @@ fn within_edge(
 ) -> Option<[DVec3; 3]> {
     /// Radii of the ball up to which the triangle reaches. Higher: less exact. Lower: shapes pass its ends.
     const FAR: f64 = 8.0;
-    if one.dot(other) >= SAME_WAY {
+    if one.dot(other) >= SAME_PUSH {
         return None;
     }
     let along = one.cross(other);

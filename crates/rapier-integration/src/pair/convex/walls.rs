@@ -5,7 +5,7 @@ use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{Side, SurfaceKind, area_vector};
 
-use super::contact::{Hit, NormalSource, PartContact, SAME_WAY};
+use super::contact::{Hit, NormalSource, PartContact, SAME_PUSH};
 use super::points::contact_points;
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{LazySurface, is_covered};
@@ -30,10 +30,8 @@ impl ConvexQuery<'_> {
         contacts: &mut ContactList<PartContact>,
         scratch: &mut ConvexScratch,
     ) {
-        // A ball has one point, and rolls over walls within a mesh.
-        let is_exempt = self.pair.is_ball() && !self.pair.config.leave_solids();
-        let Some(surface) = self.surface.as_ref().filter(|_| !is_exempt) else { return };
-        if !self.push_different_ways(contacts, SAME_WAY, scratch)
+        let Some(surface) = self.surface.as_ref() else { return };
+        if !self.push_different_ways(contacts, SAME_PUSH, scratch)
             || surface.kind() == SurfaceKind::Sheet
         {
             return;
@@ -177,7 +175,7 @@ impl ConvexQuery<'_> {
             if self.depth(hit) > 0.0 {
                 return along < SAME_SIDE;
             }
-            along < SAME_DIRECTION && self.parts(surface, hit, (way, length), scratch)
+            along < SAME_DIRECTION && self.is_parted(surface, hit, (way, length), scratch)
         };
         for (index, hit) in contacts.iter().enumerate() {
             if is_lifted(hit, scratch) {
@@ -211,8 +209,8 @@ impl ConvexQuery<'_> {
         let small = SMALL * self.filter_distance();
         for hit @ (of, PartContact { contact, .. }) in contacts {
             if self.depth(hit) > 0.0 {
-                let parts = |way, length| self.parts(surface, hit, (way, length), scratch);
-                ways.keep_parting(part_of(*of), contact.normal, small, parts);
+                let is_parted = |way, length| self.is_parted(surface, hit, (way, length), scratch);
+                ways.keep_parting(part_of(*of), contact.normal, small, is_parted);
             }
         }
     }
@@ -235,7 +233,7 @@ impl ConvexQuery<'_> {
     }
 
     /// Returns true if a triangle, and the surface, end near the lowest point of a contact along a way. The way then parts both.
-    fn parts(
+    fn is_parted(
         &self,
         surface: &LazySurface<'_>,
         (of, hit): &Hit,
@@ -243,7 +241,7 @@ impl ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
     ) -> bool {
         let [triangle, _] = self.pair.mesh_place.swap(*of);
-        let parts = self.with_pair(*of, scratch, |pair| {
+        let is_parted = self.with_pair(*of, scratch, |pair| {
             let corners = &pair.placed.in_part(pair.corners);
             let heights = corners.map(|corner| corner.dot(way));
             let highest = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -263,6 +261,6 @@ impl ConvexQuery<'_> {
                 || greatest.abs() <= most
                     && surface.around(triangle).ends_along(triangle, heights, axis)
         });
-        parts == Some(true)
+        is_parted == Some(true)
     }
 }

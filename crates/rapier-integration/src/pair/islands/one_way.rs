@@ -28,7 +28,7 @@ impl OverlapIslands {
     pub(super) fn keep_one_way(
         &mut self,
         small: f64,
-        parts: impl Fn([u32; 2], DVec3, f64) -> bool,
+        is_parted: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) {
         let Self { crossings, ways, one_ways, .. } = self;
         ways.clear();
@@ -36,8 +36,8 @@ impl OverlapIslands {
             ways.add(crossing.island, crossing.normal, crossing.depth);
         }
         for &Crossing { pair, normal, island, .. } in &*crossings {
-            let parts = |way: DVec3, depth: f64| parts(pair, way, depth);
-            ways.keep_parting(island, normal, small, parts);
+            let is_parted = |way: DVec3, depth: f64| is_parted(pair, way, depth);
+            ways.keep_parting(island, normal, small, is_parted);
         }
         for (index, crossing) in crossings.iter_mut().enumerate() {
             let Some((way, depth)) = ways.least(crossing.island) else { continue };

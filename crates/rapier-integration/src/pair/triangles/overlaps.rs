@@ -15,8 +15,8 @@ impl TriangleQuery<'_> {
     /// Ends the first pass. Returns true if a second pass is needed.
     pub(super) fn finish_first_pass(&self, islands: &mut OverlapIslands) -> bool {
         let small = SMALL * self.shapes.filter_distance;
-        let parts = |pair: [u32; 2], way: DVec3, length: f64| self.parts(pair, way, length);
-        islands.finish_first_pass(small, parts)
+        let is_parted = |pair: [u32; 2], way: DVec3, length: f64| self.is_parted(pair, way, length);
+        islands.finish_first_pass(small, is_parted)
     }
 
     /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
@@ -27,14 +27,14 @@ impl TriangleQuery<'_> {
     ) {
         contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
             let is_lifted = |(way, depth): &(DVec3, f64)| {
-                way.dot(contact.normal) < SAME_DIRECTION && self.parts(*pair, *way, *depth)
+                way.dot(contact.normal) < SAME_DIRECTION && self.is_parted(*pair, *way, *depth)
             };
             contact.distance <= 0.0 || !ways.iter().any(is_lifted)
         });
     }
 
     /// Adds the contacts of crossing triangles if all contacts are apart, as these do not part the triangles.
-    pub(super) fn part_crossing(
+    pub(super) fn add_of_crossing(
         &self,
         islands: &OverlapIslands,
         contacts: &mut ContactList<TriangleSurfaceContact>,
@@ -57,7 +57,7 @@ impl TriangleQuery<'_> {
     }
 
     /// Returns true if a way parts two triangles at their height, and both surfaces end there.
-    fn parts(&self, pair: [u32; 2], way: DVec3, length: f64) -> bool {
+    fn is_parted(&self, pair: [u32; 2], way: DVec3, length: f64) -> bool {
         let most = greatest_overlap(length, self.shapes.filter_unit());
         let ends = |filter: &SurfaceFilter<'_>| filter.ends_along(way);
         self.overlap(pair, way).is_some_and(|length| length.abs() <= most)
