@@ -58,6 +58,9 @@ struct RandomArguments {
     /// Iterations of Rapier's solver in random scenes; its default if not given
     #[arg(long)]
     iterations: Option<usize>,
+    /// Keeps Rapier from sweeping fast convex bodies in random scenes
+    #[arg(long)]
+    no_sweeps: bool,
 }
 
 impl RandomArguments {
@@ -71,7 +74,8 @@ impl RandomArguments {
         let numbers = self.number.map_or(0..count, |number| number..number + 1);
         let plan = RandomPlan::new(numbers, self.seed, settings);
         let families = if self.family.is_empty() { plan.families } else { self.family };
-        RandomPlan { families, unit: self.unit, iterations: self.iterations, ..plan }
+        let Self { unit, iterations, no_sweeps, .. } = self;
+        RandomPlan { families, unit, iterations, sweeps: !no_sweeps, ..plan }
     }
 }
 

@@ -23,6 +23,8 @@ pub(super) struct Draw {
     pub unit: f32,
     /// Iterations of Rapier's solver; `None` for its default.
     pub iterations: Option<usize>,
+    /// True if Rapier sweeps fast convex bodies, as by default.
+    pub sweeps: bool,
     /// Gravity, in sizes/s².
     pub gravity: f32,
     /// Time step, in seconds.
@@ -73,12 +75,14 @@ impl Draw {
         let dt = log(fine.max(1.0 / 240.0), coarse.min(1.0 / 30.0));
         let is_reversed = random.rand_range(0..2) == 1;
         let about = vec![format!("size {size:.2}, {gravity:.1}/s², {:.0} Hz", 1.0 / dt)];
-        let (unit, iterations, is_sunk, has_control) = (size, None, false, true);
+        let (unit, iterations, sweeps) = (size, None, true);
+        let (is_sunk, has_control) = (false, true);
         Self {
             random,
             size,
             unit,
             iterations,
+            sweeps,
             gravity,
             dt,
             is_reversed,

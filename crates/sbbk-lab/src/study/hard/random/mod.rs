@@ -74,6 +74,8 @@ pub struct RandomPlan {
     pub unit: Option<f32>,
     /// Iterations of Rapier's solver; `None` for its default. Chains and gears keep theirs.
     pub iterations: Option<usize>,
+    /// False if Rapier does not sweep fast convex bodies.
+    pub sweeps: bool,
     pub settings: Settings,
 }
 
@@ -81,15 +83,15 @@ impl RandomPlan {
     /// Scenes of all families.
     pub fn new(numbers: Range<u32>, seed: u64, settings: Settings) -> Self {
         let families = Family::value_variants().to_vec();
-        Self { families, numbers, seed, unit: None, iterations: None, settings }
+        Self { families, numbers, seed, unit: None, iterations: None, sweeps: true, settings }
     }
 
     fn trial(&self, family: Family, number: u32) -> Trial {
-        let Self { seed, unit, iterations, .. } = *self;
+        let Self { seed, unit, iterations, sweeps, .. } = *self;
         let run = move |kit: &Kit| {
             let mut draw = Draw::new(family, seed, number);
             draw.unit = unit.unwrap_or(draw.size);
-            draw.iterations = iterations;
+            (draw.iterations, draw.sweeps) = (iterations, sweeps);
             let figures = family.run(&mut draw, kit);
             // Some parts have no convex shape.
             let is_run = kit.column != Column::Control || draw.has_control;
@@ -123,7 +125,8 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> io::Result<Results> {
         let seed = plan.seed;
         let unit = plan.unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
         let iterations = plan.iterations.map(|count| format!(" --iterations {count}"));
-        let set = unit + &iterations.unwrap_or_default();
+        let sweeps = if plan.sweeps { "" } else { " --no-sweeps" };
+        let set = unit + &iterations.unwrap_or_default() + sweeps;
         notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{set} --verbose"));
     }
     Ok(Results { verdict: verdict(plan, &rows), notes, ..Results::new("random_scenes", rows) })

@@ -70,6 +70,7 @@ impl<'a> Stage<'a> {
         (parameters.length_unit, parameters.dt) = (draw.unit, draw.dt);
         parameters.num_solver_iterations =
             draw.iterations.unwrap_or(parameters.num_solver_iterations);
+        parameters.max_ccd_substeps *= usize::from(draw.sweeps);
         let mut insert = |body: &Body| insert(&mut world, kit, body, size);
         let mut handles: Vec<_> = match draw.is_reversed {
             false => bodies.iter().map(insert).collect(),
