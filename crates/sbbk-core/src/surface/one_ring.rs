@@ -121,13 +121,11 @@ impl<F: Facets> Around<F> {
     ) -> bool {
         let mut slopes = Slopes::default();
         let rounding = ROUNDING * place.abs().max_element();
-        let nearest = |corners: &[DVec3; 3], point: DVec3| {
-            convex_contact(corners, &PointSupport(point), f64::INFINITY).map(|it| it.on_triangle)
-        };
         self.visit_touching(triangle, place, CROWD, |_, corners, ends| {
-            let is_across = |at: DVec3| at.length_squared() > rounding * rounding;
-            if nearest(corners, DVec3::ZERO).is_some_and(is_across) {
-                let point = nearest(corners, distance * direction).unwrap_or_default();
+            if !touches(corners, [DVec3::ZERO; 2], rounding) {
+                let point = PointSupport(distance * direction);
+                let nearest = convex_contact(corners, &point, f64::INFINITY);
+                let point = nearest.map_or(DVec3::ZERO, |nearest| nearest.on_triangle);
                 // By how much the square of the distance is less.
                 let gain = 2.0 * distance * direction.dot(point) - point.length_squared();
                 let least = most * distance * point.length();
