@@ -163,3 +163,35 @@ fn what_stands_in_a_room_has_contacts() {
         }
     }
 }
+
+/// Closed meshes around shapes, wound either way. Would catch contacts of a room that count as walls within the body because the
+/// faces lead inwards.
+#[test]
+fn rooms_whose_faces_lead_in_have_the_contacts_of_others() {
+    let dispatcher = every();
+    let mut random = Rand32::new(19);
+    let mut touching = 0;
+    let rooms = [mesh::cuboid(Vec3::new(3.0, 1.5, 3.0), 1), mesh::ball(3.0, 8)];
+    for (room, (name, shape)) in
+        rooms.iter().flat_map(|room| bodies().into_iter().map(move |body| (room, body)))
+    {
+        let rooms = [room.clone(), mesh::turned_inside_out(room.clone())].map(|room| room.shape());
+        for _ in 0..600 {
+            let way = direction(&mut random) * Vec3::new(3.0, 2.0, 3.0);
+            let at = Pose::from_parts(0.9 * random.rand_float() * way, rotation(&mut random));
+            let [outward, inward] = rooms.each_ref().map(|room| {
+                let found = Question::new(&**room, &*shape, at).fresh(&dispatcher);
+                let touching = found.iter().filter(|manifold| !manifold.points.is_empty());
+                touching.map(|of| (triangles(of), distance(of), of.local_n1)).collect::<Vec<_>>()
+            });
+            let of = |found: &[(_, Real, Vec3)]| found.iter().map(|of| of.0).collect::<Vec<_>>();
+            assert_eq!(of(&outward), of(&inward), "{name} at {at:?}");
+            for ((_, one, normal1), (_, other, normal2)) in outward.iter().zip(&inward) {
+                let is_same = (one - other).abs() < 1e-4 && normal1.distance(*normal2) < 1e-3;
+                assert!(is_same, "{name} at {at:?}: {one} along {normal1}, {other}, {normal2}");
+                touching += 1;
+            }
+        }
+    }
+    assert!(touching > 1500, "{touching} contacts");
+}

@@ -72,8 +72,8 @@ impl TriangleShapes<'_> {
 
     /// Removes most contacts beyond the filter distance. If a contact is near, far ones stay in the directions of near contacts and
     /// of local minima. Between shapes that cross, those that lead into solids go, as they would hold the shapes in each other. If
-    /// no contact is near, the local minima of the larger shape stay. If there are none, all contacts stay. The smaller shape may
-    /// turn before both meet. `directions` is memory.
+    /// no contact is near, only local minima of the larger shape stay. Shapes without such a minimum keep all contacts, as the smaller
+    /// one may turn before both meet. `directions` is memory.
     pub(super) fn thin_out_far(
         &self,
         directions: &mut Vec<DVec3>,

@@ -142,7 +142,7 @@ impl ConvexQuery<'_> {
         })
     }
 
-    /// Returns true if the middle of a part is in a solid.
+    /// Returns true if the middle of a part is in a solid, or in a room whose faces lead inwards.
     fn is_middle_within(
         &self,
         surface: &LazySurface<'_>,
@@ -151,7 +151,8 @@ impl ConvexQuery<'_> {
     ) -> bool {
         let is_within = self.pair.parts.with(part, |shape| {
             let middle = self.placed(part, &shape, scratch).in_mesh(shape.shape.middle()?);
-            Some(is_covered(self.pair.mesh.mesh, middle) && surface.winding_sign(middle) == Some(1))
+            let is_in = || surface.winding_sign(middle).is_some_and(|sign| sign != 0);
+            Some(is_covered(self.pair.mesh.mesh, middle) && is_in())
         });
         is_within.flatten() == Some(true)
     }
