@@ -173,8 +173,8 @@ impl PreparedTree {
     }
 
     /// Overrides the detected kind. A mesh that is declared [`Solid`](SurfaceKind::Solid) is no room: it
-    /// also pushes out mesh bodies that are wholly inside. A detected solid is a room, so declaring what was detected is a change. A declared [`Sheet`](SurfaceKind::Sheet)
-    /// has no inside.
+    /// also pushes out mesh bodies that are wholly inside. A detected solid is a room, so declaring what was
+    /// detected is a change. A declared [`Sheet`](SurfaceKind::Sheet) has no inside.
     ///
     /// Holds for all meshes with this content while one of them is in use. One of more than 8192
     /// triangles must be registered.

@@ -150,7 +150,7 @@ impl MeshStore {
         if !is_small(count) {
             return self.entry_of(ContentHash::of_samples(mesh));
         }
-        // A hash takes as long as the tree of one of 64 triangles.
+        // A hash takes a 64th of the time of a tree.
         self.budget.charge(count / 64);
         self.entry_of(ContentHash::of(mesh))
     }

@@ -129,7 +129,9 @@ impl<F: Facets> Around<F> {
                 // By how much the square of the distance is less.
                 let gain = 2.0 * distance * direction.dot(point) - point.length_squared();
                 let least = most * distance * point.length();
-                slopes.rise = if gain > least { f64::INFINITY } else { slopes.rise };
+                if gain > least {
+                    slopes.rise = f64::INFINITY;
+                }
             } else {
                 ends.for_each(|end| slopes.add(end, direction));
             }

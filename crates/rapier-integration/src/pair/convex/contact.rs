@@ -1,18 +1,15 @@
 //! The exact contact of a triangle and a convex shape, by [`sbbk_core::contact::convex`].
 
-use std::sync::OnceLock;
-
 use glamx::DVec3;
-use parry3d::shape::{Cone, ConvexPolyhedron, Cuboid, Cylinder, Segment, Triangle, TypedShape};
+use parry3d::shape::{Cone, Cuboid, Cylinder, Segment, Triangle, TypedShape};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{
-    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullPoints, PointSupport,
-    SegmentSupport, SupportMap, TriangleSupport, convex_contact, convex_touches, feature_at,
-    half_space_contact,
+    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, PointSupport, SegmentSupport,
+    SupportMap, TriangleSupport, convex_contact, convex_touches, feature_at, half_space_contact,
 };
 
 use super::parts::PlacedPart;
-use super::shape::ConvexShape;
+use super::shape::{ConvexShape, KeptHull};
 
 /// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
 /// stumble over walls within a mesh.
@@ -55,32 +52,6 @@ impl PartContact {
     pub(super) fn with_normal_of(&self, other: &ConvexContact) -> Self {
         let contact = ConvexContact { on_triangle: self.contact.on_triangle, ..*other };
         Self { contact, source: NormalSource::Neighbour, ..*self }
-    }
-}
-
-/// Points of a convex polyhedron, read when first used.
-#[derive(Clone, Debug, Default)]
-pub(super) struct KeptHull {
-    points: OnceLock<HullPoints>,
-    /// True if depths are found by faces. Faces take as long as the depths of some fifty triangles.
-    has_faces: bool,
-}
-
-impl KeptHull {
-    /// Keeps a hull for many queries.
-    pub(super) fn with_faces() -> Self {
-        Self { has_faces: true, ..Self::default() }
-    }
-
-    fn of(&self, shape: &ConvexPolyhedron) -> &HullPoints {
-        let points = || shape.points().iter().copied();
-        self.points.get_or_init(|| {
-            if self.has_faces {
-                HullPoints::with_faces(points(), fans(shape))
-            } else {
-                HullPoints::without_faces(points())
-            }
-        })
     }
 }
 
@@ -210,15 +181,4 @@ fn cylinder_support(cylinder: &Cylinder) -> CylinderSupport {
 fn cone_support(cone: &Cone) -> ConeSupport {
     let [half_height, radius] = [cone.half_height, cone.radius].map(f64::from);
     ConeSupport { half_height, radius }
-}
-
-/// Returns the faces of a polyhedron, cut into triangles.
-fn fans(shape: &ConvexPolyhedron) -> impl Iterator<Item = [u32; 3]> {
-    let corners = shape.vertices_adj_to_face();
-    shape.faces().iter().flat_map(|face| {
-        let start = face.first_vertex_or_edge as usize;
-        let corners = &corners[start..start + face.num_vertices_or_edges as usize];
-        let (first, rest) = corners.split_first().unwrap_or((&0, &[]));
-        rest.windows(2).map(|ends| [*first, ends[0], ends[1]])
-    })
 }

@@ -11,8 +11,7 @@ use parry3d::shape::{CompositeShape, ConvexPolyhedron, Shape};
 use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
-use super::contact::KeptHull;
-use super::shape::{ConvexShape, Extent, ball_around};
+use super::shape::{ConvexShape, Extent, KeptHull, ball_around};
 use crate::mesh::box_of;
 use crate::pair::pose::MeshPlace;
 

@@ -65,7 +65,8 @@ pub(super) fn contact_points(
         let edge = [corners[usize::from(i)], corners[usize::from(i + 1) % 3]];
         return border_points(edge, [*p, *q], &contact.contact, normal, found);
     }
-    let has_closest = overlap_points(corners, &feature, contact, normal, is_own, &mut found);
+    let has_closest =
+        overlap_points(corners, (&feature, polygon), contact, normal, is_own, &mut found);
     if has_rim && let ConvexShape::Features { map, .. } = shape {
         rim_points(corners, map, on_shape, normal, polygon, equal_depth).for_each(&mut found);
     }
@@ -84,13 +85,12 @@ pub(super) fn contact_points(
 #[inline(always)]
 fn overlap_points(
     corners: &[DVec3; 3],
-    feature: &PolygonalFeature,
+    (feature, polygon): (&PolygonalFeature, &[DVec3]),
     PartContact { contact, source, .. }: &PartContact,
     normal: DVec3,
     is_own: bool,
     mut found: impl FnMut(PointPair),
 ) -> bool {
-    let polygon = &feature.vertices.map(|corner| corner.as_dvec3())[..feature.num_vertices];
     let mut points = FeaturePoints::new();
     clip_feature(corners, polygon, normal, &mut points);
     // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces. Points nearer

@@ -12,10 +12,10 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
-use super::contact::{KeptHull, core_contact, core_support, core_touches};
+use super::contact::{core_contact, core_support, core_touches};
 use super::near::{gap_of, lowest, time_of, triangles_near};
 use super::parts::{Part, PlacedPart};
-use super::shape::{ConvexShape, Extent};
+use super::shape::{ConvexShape, Extent, KeptHull};
 use crate::mesh::{MeshView, box_of};
 use crate::pair::pose::{MeshPlace, PairPose};
 

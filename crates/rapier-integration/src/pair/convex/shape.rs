@@ -1,10 +1,13 @@
 //! Parry's convex shapes: kinds, extents, bounds.
 
+use std::sync::OnceLock;
+
 use glamx::{DVec3, Vec3, Vec3Swizzles};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{
     Ball, ConvexPolyhedron, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType,
 };
+use sbbk_core::contact::convex::HullPoints;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
@@ -194,4 +197,41 @@ impl Extent {
             }
         }
     }
+}
+
+/// Points of a convex polyhedron, read when first used.
+#[derive(Clone, Debug, Default)]
+pub(super) struct KeptHull {
+    points: OnceLock<HullPoints>,
+    /// True if depths are found by faces. Faces take as long as the depths of some fifty triangles.
+    has_faces: bool,
+}
+
+impl KeptHull {
+    /// Keeps a hull for many queries.
+    pub(super) fn with_faces() -> Self {
+        Self { has_faces: true, ..Self::default() }
+    }
+
+    pub(super) fn of(&self, shape: &ConvexPolyhedron) -> &HullPoints {
+        let points = || shape.points().iter().copied();
+        self.points.get_or_init(|| {
+            if self.has_faces {
+                HullPoints::with_faces(points(), fans(shape))
+            } else {
+                HullPoints::without_faces(points())
+            }
+        })
+    }
+}
+
+/// Returns the faces of a polyhedron, cut into triangles.
+fn fans(shape: &ConvexPolyhedron) -> impl Iterator<Item = [u32; 3]> {
+    let corners = shape.vertices_adj_to_face();
+    shape.faces().iter().flat_map(|face| {
+        let start = face.first_vertex_or_edge as usize;
+        let corners = &corners[start..start + face.num_vertices_or_edges as usize];
+        let (first, rest) = corners.split_first().unwrap_or((&0, &[]));
+        rest.windows(2).map(|ends| [*first, ends[0], ends[1]])
+    })
 }

@@ -10,11 +10,11 @@ use sbbk_core::surface::strays::seam;
 use sbbk_core::surface::{area_vector, longest_side};
 use sbbk_core::volumes::Sphere;
 
-use super::contact::{KeptHull, NormalSource, PartContact, SAME_PUSH, core_contact, core_support};
+use super::contact::{NormalSource, PartContact, SAME_PUSH, core_contact, core_support};
 use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, is_over, ray_length};
-use super::shape::ConvexShape;
+use super::shape::{ConvexShape, KeptHull};
 use crate::pair::borders::is_past_border;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::{ContactSummary, PatchPlan};

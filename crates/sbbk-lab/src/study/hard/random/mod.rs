@@ -72,7 +72,7 @@ pub struct RandomPlan {
     pub seed: u64,
     /// Rapier's length unit; `None` for the size of the bodies.
     pub unit: Option<f32>,
-    /// Iterations of Rapier's solver; `None` for its default. Chains and gears keep theirs.
+    /// Iterations of Rapier's solver; `None` for its default. Chains keep theirs.
     pub iterations: Option<usize>,
     /// False if Rapier does not sweep fast convex bodies.
     pub sweeps: bool,
