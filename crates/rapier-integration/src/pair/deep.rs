@@ -20,10 +20,6 @@ use super::ways::{ALIKE, SAME_SIDE};
 /// contacts of several contours push against each other.
 const NEAR_AREA_VECTOR: f64 = 0.7;
 
-/// Greatest gap of a closed contour, as a share of its length. Higher: contours of surfaces with holes count.
-/// Lower: rounding opens contours.
-const GAP: f64 = 1.0e-6;
-
 /// Least area vector of a contour, as a share of the area that its segments sweep around the middle. Higher:
 /// bodies that hook into each other keep the contacts of their triangles. Lower: contours push nowhere.
 const COHERENT: f64 = 0.5;
@@ -32,9 +28,10 @@ const COHERENT: f64 = 0.5;
 /// edges are left out. Lower: rays meet the surface where they start.
 const INSET: f64 = 1.0e-3;
 
-/// Greatest distance of a flat contour from its plane, as a share of its length. Higher: contours around edges count as
-/// flat. Lower: rounding makes contours of flat faces uneven.
-const FLAT: f64 = 1.0e-3;
+/// Greatest gap of a closed contour, and distance of a flat one from its plane, as a share of its length. Higher: contours
+/// of surfaces with holes are closed, and those around edges flat. Lower: soups have no contours, and rounding makes flat
+/// faces uneven.
+const TOLERANCE: f64 = 1e-3;
 
 /// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all their way. Lower: bodies deep
 /// in others turn and sink.
@@ -132,7 +129,7 @@ impl<'s> Contour<'s> {
         });
         let (area, swept) =
             areas.fold((DVec3::ZERO, 0.0), |(area, swept), one| (area + one, swept + one.length()));
-        let is_closed = gap.length() <= GAP * length;
+        let is_closed = gap.length() <= TOLERANCE * length;
         let normal = area.normalize_or_zero();
         let mut ends = segments.iter().flat_map(|one| one.ends);
         (is_closed && area.length() > COHERENT * swept).then(|| Self {
@@ -141,7 +138,7 @@ impl<'s> Contour<'s> {
             most: DEPTH_PER_LENGTH * length,
             middle: middle - inset / length * outward,
             normal,
-            is_flat: ends.all(|end| (end - middle).dot(normal).abs() <= FLAT * length),
+            is_flat: ends.all(|end| (end - middle).dot(normal).abs() <= TOLERANCE * length),
         })
     }
 

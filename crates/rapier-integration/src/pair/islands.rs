@@ -45,7 +45,7 @@ pub(super) struct Support {
 /// Number of crossing pairs of an island for which one reliable contact is enough. Higher: bodies deep
 /// in each other turn about their only contact and sink; lower: contacts that are no local minima push
 /// aside.
-const SUPPORTED: u32 = 8;
+const SUPPORTED: u32 = 4;
 
 /// Direction by which shape 2 leaves an overlap.
 #[derive(Copy, Clone)]
