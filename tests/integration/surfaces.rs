@@ -70,17 +70,20 @@ fn a_cube_sunk_halfway_leaves_by_the_nearer_side() {
 fn boxes_deep_in_each_other_part_the_way_they_came() {
     let soup = |mesh: &Mesh| mesh::unwelded(mesh, 2e-5, 7);
     let doubled = |mesh: &Mesh| mesh::doubled(mesh, 2);
-    let dirt: [(&str, &dyn Fn(&Mesh) -> Mesh); 3] =
+    let kinds: [(&str, Dirt); 3] =
         [("clean", &Mesh::clone), ("soup", &soup), ("doubled", &doubled)];
-    for (name, dirt) in dirt {
+    for (name, dirt) in kinds {
         let [aside, count] = count_aside(dirt);
         println!("{name}: {aside} of {count} aside");
         assert!(aside <= count / 100, "{name}: {aside} of {count} are pushed aside");
     }
 }
 
+/// Makes a mesh dirty.
+type Dirt<'a> = &'a dyn Fn(&Mesh) -> Mesh;
+
 /// Puts boxes deep in each other. Returns how many are pushed aside, and the number of all.
-fn count_aside(dirt: &dyn Fn(&Mesh) -> Mesh) -> [usize; 2] {
+fn count_aside(dirt: Dirt<'_>) -> [usize; 2] {
     let mut random = Rand32::new(5);
     let (mut count, mut aside) = (0, 0);
     for [one, other] in [[0.4, 0.58], [1.0, 1.0], [1.6, 1.0], [4.0, 1.0]] {
