@@ -43,7 +43,7 @@ pub fn doubled(mesh: &Mesh, nth: usize) -> Mesh {
     let times = |index: usize| if index.is_multiple_of(nth) { 2 } else { 1 };
     let triangles = mesh.triangles.iter().enumerate();
     let triangles = triangles.flat_map(|(index, &triangle)| vec![triangle; times(index)]);
-    Mesh::new(mesh.name.clone(), mesh.vertices.clone(), triangles.collect())
+    Mesh { triangles: triangles.collect(), ..mesh.clone() }
 }
 
 /// The mesh with slivers, which have no area up to rounding. On an edge of each second triangle lies one with a corner of its
@@ -73,29 +73,25 @@ pub fn two_sided(mesh: &Mesh) -> Mesh {
 /// The mesh with triangles wound by chance.
 pub fn random_winding(mesh: &Mesh, seed: u64) -> Mesh {
     let mut random = Rand32::new(seed);
-    let mut wound = mesh.clone();
-    for triangle in &mut wound.triangles {
-        if random.rand_range(0..2) == 1 {
-            triangle.swap(1, 2);
-        }
-    }
-    wound
+    turned(mesh.clone(), |_| random.rand_range(0..2) == 1)
 }
 
 /// The mesh with the triangles within `reach` of a point wound the other way.
 pub fn turned_near(mesh: &Mesh, point: Vec3, reach: f32) -> Mesh {
-    let mut wound = mesh.clone();
-    for (index, triangle) in wound.triangles.iter_mut().enumerate() {
-        if mesh.corners(index).iter().all(|corner| corner.distance(point) < reach) {
-            triangle.swap(1, 2);
-        }
-    }
-    wound
+    let is_near = |index| mesh.corners(index).iter().all(|corner| corner.distance(point) < reach);
+    turned(mesh.clone(), is_near)
 }
 
 /// A mesh whose triangles are wound the other way.
-pub fn turned_inside_out(mut mesh: Mesh) -> Mesh {
-    mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+pub fn turned_inside_out(mesh: Mesh) -> Mesh {
+    turned(mesh, |_| true)
+}
+
+/// The mesh with some triangles wound the other way, chosen by their indices in order.
+fn turned(mut mesh: Mesh, mut is_turned: impl FnMut(usize) -> bool) -> Mesh {
+    let triangles = mesh.triangles.iter_mut().enumerate();
+    let chosen = triangles.filter(|(index, _)| is_turned(*index));
+    chosen.for_each(|(_, triangle)| triangle.swap(1, 2));
     mesh
 }
 
