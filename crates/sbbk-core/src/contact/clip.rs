@@ -1,16 +1,17 @@
-//! The contact points between two triangles that face each other along a normal.
+//! The contact points between a triangle and another one, or a feature of a shape, that face each other along a normal.
 //!
 //! Seen along the normal, the overlap of two triangles is a polygon. Its corners are vertices of
 //! one triangle inside the other, and crossings of two edges. The distance along the normal is
 //! linear over the polygon, so it takes its extremes at the corners. One table of signs gives all
 //! corners: the side of each edge of one triangle on which each vertex of the other lies.
+//! Features of two to four corners overlap triangles in the same way.
 //!
 //! **Capacity.** Each triangle has three vertices. Among three signs around a triangle at most two
 //! neighbours differ, so an edge crosses at most two edges. So there are at most six crossings and
 //! twelve points, for any rounding of the signs. The closest points are the thirteenth.
 
 use super::TriangleContact;
-use super::closest::within_edge;
+use super::closest::{TIE, within_edge};
 use super::feature::{Feature, FeaturePair};
 use super::shadow_signs::{EdgeCrossing, ShadowSigns};
 use super::triangle::{NEAR_PARALLEL, Triangle};
@@ -21,7 +22,7 @@ use glamx::DVec3;
 /// Least sine between the normal and a triangle's plane at which points are projected to that
 /// plane. Lower: points slide far along a triangle that is seen edge-on. Higher: steep triangles
 /// lose points, and only their edges are left.
-pub(super) const EDGE_ON: f64 = 1.0e-5;
+const EDGE_ON: f64 = 1.0e-5;
 
 /// Closest points within this fraction of the smaller triangle's size count as one point. Higher:
 /// points are lost. Lower: points come twice.
@@ -84,76 +85,106 @@ pub(super) fn clip_triangles(
     out: &mut ManifoldPoints,
 ) {
     out.clear();
-    let signs = ShadowSigns::new(t1, t2, normal);
-    let inside = signs.inside();
-    for k in 0..2 {
-        push_vertices([t1, t2], k, inside[k], normal, out);
+    let polygon = Polygon { corners: t2.vertices, face: Some(*t2), size: t2.size, tie: TIE };
+    clip_polygon(t1, &polygon, normal, |[point1, point2], distance, [feature1, feature2]| {
+        let features = FeaturePair::new(feature1, feature2);
+        out.push(ManifoldPoint { point1, point2, distance, features });
+    });
+}
+
+/// A plane polygon of up to four corners, or a segment.
+pub(super) struct Polygon<'a> {
+    pub corners: &'a [DVec3],
+    /// The first three corners. A segment has no face.
+    pub face: Option<Triangle<'a>>,
+    /// Like [`Triangle::size`].
+    pub size: f64,
+    /// Distance, in sizes, by which a vertex may be off an edge and count as on it.
+    pub tie: f64,
+}
+
+/// Calls `found` with the corners of the overlap of a triangle and a polygon, seen along `normal`. Each has its points on both, the
+/// distance between these, and its features.
+#[inline(always)]
+pub(super) fn clip_polygon(
+    t: &Triangle,
+    polygon: &Polygon,
+    normal: DVec3,
+    mut found: impl FnMut([DVec3; 2], f64, [Feature; 2]),
+) {
+    let corners = polygon.corners;
+    let signs = ShadowSigns::new(t, polygon, normal);
+    let [of_triangle, of_polygon] = signs.inside();
+    if let Some(face) = &polygon.face {
+        let may_be_thin = corners.len() == 3;
+        for_feet(t.vertices, of_triangle, (face, may_be_thin), normal, |v, foot, height| {
+            let features = [Feature::Vertex(v as u8), Feature::Face];
+            found([t.vertices[v], foot], -height, features);
+        });
     }
+    for_feet(corners, of_polygon, (t, true), normal, |v, foot, height| {
+        found([foot, corners[v]], height, [Feature::Face, Feature::Vertex(v as u8)]);
+    });
     for bit in bits(signs.crossings()) {
-        out.push(crossing_point(t1, t2, &signs.crossing(bit), normal));
+        let crossing = signs.crossing(bit);
+        let features = crossing.edges.map(|edge| Feature::Edge(edge as u8));
+        let points @ [point1, point2] = crossing_points(t, polygon, &crossing, normal);
+        found(points, (point2 - point1).dot(normal), features);
     }
 }
 
+/// Returns the points of both edges at a crossing.
 #[inline(always)]
-fn crossing_point(
-    t1: &Triangle,
-    t2: &Triangle,
+fn crossing_points(
+    t: &Triangle,
+    &Polygon { corners, size, .. }: &Polygon,
     crossing: &EdgeCrossing,
     normal: DVec3,
-) -> ManifoldPoint {
+) -> [DVec3; 2] {
     let ([i, j], [along1, mut along2]) = (crossing.edges, crossing.along);
-    let point1 = t1.vertices[i] + t1.edges[i] * along1;
-    if crossing.area < NEAR_PARALLEL * t1.size * t2.size {
-        along2 = along_in_line(point1, t2, j, normal);
+    let point1 = t.vertices[i] + t.edges[i] * along1;
+    let (start, end) = (corners[j], *corners.get(j + 1).unwrap_or(&corners[0]));
+    let edge = end - start;
+    if crossing.area < NEAR_PARALLEL * t.size * size {
+        along2 = along_in_line(point1 - start, edge, normal);
     }
-    let point2 = t2.vertices[j] + t2.edges[j] * along2;
-    let distance = (point2 - point1).dot(normal);
-    let features = FeaturePair::new(Feature::Edge(i as u8), Feature::Edge(j as u8));
-    ManifoldPoint { point1, point2, distance, features }
+    [point1, start + edge * along2]
 }
 
 /// Place on an edge that is closest to being in line with a point, as a fraction of the edge. Both
-/// places of a crossing are uncertain if the edges are near parallel; this one fits the other.
+/// places of a crossing are uncertain if the edges are near parallel; this one fits the other. The point is seen from the
+/// start of the edge.
 #[cold]
-fn along_in_line(point: DVec3, t: &Triangle, j: usize, normal: DVec3) -> f64 {
-    let shadow = t.edges[j] - normal * t.edges[j].dot(normal);
-    within_edge((point - t.vertices[j]).dot(shadow) / shadow.length_squared())
+fn along_in_line(point: DVec3, edge: DVec3, normal: DVec3) -> f64 {
+    let shadow = edge - normal * edge.dot(normal);
+    within_edge(point.dot(shadow) / shadow.length_squared())
 }
 
-/// Adds the vertices of triangle `k` (0 or 1) whose bits are set. Each vertex gets the point in
-/// line with it in the plane of the other triangle.
+/// Calls `found` with the vertices whose bits are set, the points in line with them in the plane of a face, and their heights over
+/// these. The face may be thin unless it is a part of a polygon.
 #[inline(always)]
-fn push_vertices(
-    triangles: [&Triangle; 2],
-    k: usize,
-    vertices: u32,
+fn for_feet(
+    vertices: &[DVec3],
+    inside: u32,
+    (face, may_be_thin): (&Triangle, bool),
     normal: DVec3,
-    out: &mut ManifoldPoints,
+    mut found: impl FnMut(usize, DVec3, f64),
 ) {
-    if vertices == 0 {
+    if inside == 0 {
         return;
     }
-    let (own, other) = (triangles[k], triangles[1 - k]);
-    let face = other.area_vector();
-    let (area_squared, cosine) = (face.length_squared(), face.dot(normal));
+    let area = face.area_vector();
+    let (area_squared, cosine) = (area.length_squared(), area.dot(normal));
     if cosine * cosine <= EDGE_ON * EDGE_ON * area_squared {
         return;
     }
-    let is_thin = other.is_thin(area_squared);
-    let slope = face * (1.0 / cosine);
-    for v in bits(vertices) {
-        let vertex = own.vertices[v];
-        let height = (vertex - other.vertices[0]).dot(slope);
-        let foot = vertex - normal * height;
-        if is_thin && !other.is_beside(foot) {
-            continue;
+    let is_thin = may_be_thin && face.is_thin(area_squared);
+    let slope = area * (1.0 / cosine);
+    for v in bits(inside) {
+        let height = (vertices[v] - face.vertices[0]).dot(slope);
+        let foot = vertices[v] - normal * height;
+        if !is_thin || face.is_beside(foot) {
+            found(v, foot, height);
         }
-        let features = FeaturePair::new(Feature::Vertex(v as u8), Feature::Face);
-        out.push(if k == 0 {
-            ManifoldPoint { point1: vertex, point2: foot, distance: -height, features }
-        } else {
-            let features = features.swapped();
-            ManifoldPoint { point1: foot, point2: vertex, distance: height, features }
-        });
     }
 }

@@ -99,7 +99,7 @@ pub(super) fn is_over(point: DVec3, t: &Triangle, normal: DVec3) -> bool {
 
 /// True if the values are all positive or zero, or all negative or zero.
 #[inline(always)]
-pub(super) fn has_one_sign([a, b, c]: [f64; 3]) -> bool {
+fn has_one_sign([a, b, c]: [f64; 3]) -> bool {
     // No branches: the sign cannot be predicted.
     ((a >= 0.0) & (b >= 0.0) & (c >= 0.0)) | ((a <= 0.0) & (b <= 0.0) & (c <= 0.0))
 }
