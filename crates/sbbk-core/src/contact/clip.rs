@@ -160,8 +160,8 @@ fn along_in_line(point: DVec3, edge: DVec3, normal: DVec3) -> f64 {
     within_edge(point.dot(shadow) / shadow.length_squared())
 }
 
-/// Calls `found` with the vertices whose bits are set, the points in line with them in the plane of a face, and their heights over
-/// these. The face may be thin unless it is a part of a polygon.
+/// Calls `found` with the vertices whose bits are set, their feet in the plane of a face along `normal`, and their heights.
+/// `may_be_thin`: false for a face that is a part of a polygon.
 #[inline(always)]
 fn for_feet(
     vertices: &[DVec3],

@@ -1,8 +1,8 @@
 //! Signs of the vertices of a triangle and of a polygon against the edges of the other, on a plane of view.
 //!
 //! Each vertex of the triangle has signs against all edges of the polygon, and each edge against all corners. The corners
-//! and edges of the polygon take the four SIMD lanes. The lanes beyond the last corner repeat the first one. So the corner
-//! after each lane is that of the next lane.
+//! and edges of the polygon take the four SIMD lanes. Lanes beyond the last corner repeat the first one, so the next lane
+//! always has the next corner.
 
 use super::clip::Polygon;
 use super::triangle::{NEXT, Triangle};
@@ -16,7 +16,7 @@ pub(super) const MOST_CORNERS: usize = 4;
 struct Sides {
     /// Twice the areas between edges and vertices.
     areas: f64x4,
-    /// Lanes whose vertices are left of the edges. Those in neither mask are on the edge, as far as rounding can tell.
+    /// Lanes whose vertices are left of the edges. Vertices in neither mask are on the edge up to rounding.
     left: u32,
     right: u32,
 }
