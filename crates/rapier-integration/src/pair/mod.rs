@@ -16,6 +16,7 @@ mod shapes;
 mod sides;
 mod surface;
 mod triangle_contacts;
+mod triangle_points;
 mod triangles;
 mod update;
 mod ways;

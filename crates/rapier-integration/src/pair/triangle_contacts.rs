@@ -10,7 +10,8 @@ use sbbk_core::query::TrianglePair;
 use super::pose::PairPose;
 use super::query::ContactPoints;
 use super::shapes::contact_of;
-use super::write::{write_points, write_triangle_points};
+use super::triangle_points::write_triangle_points;
+use super::write::write_points;
 
 /// The contacts of two triangles from step to step, without meshes: for hosts with a midphase of
 /// their own.

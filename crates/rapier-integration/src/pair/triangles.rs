@@ -37,7 +37,7 @@ use super::shapes::{
 };
 use super::sides::{HeldMesh, InsideTest};
 use super::surface::{SurfaceFilter, Verdict};
-use super::write::{constrained_normal, write_triangle_points};
+use super::triangle_points::{constrained_normal, write_triangle_points};
 use crate::SbbkConfig;
 use crate::mesh::{Change, LazySurface, MeshView, PairMesh, use_trees};
 

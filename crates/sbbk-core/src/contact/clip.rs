@@ -14,7 +14,7 @@ use super::TriangleContact;
 use super::closest::{TIE, within_edge};
 use super::feature::{Feature, FeaturePair};
 use super::shadow_signs::{EdgeCrossing, ShadowSigns};
-use super::triangle::{NEAR_PARALLEL, Triangle};
+use super::triangle::{NEAR_PARALLEL, Polygon, Triangle};
 use crate::simd::bits;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
@@ -90,17 +90,6 @@ pub(super) fn clip_triangles(
         let features = FeaturePair::new(feature1, feature2);
         out.push(ManifoldPoint { point1, point2, distance, features });
     });
-}
-
-/// A plane polygon of up to four corners, or a segment.
-pub(super) struct Polygon<'a> {
-    pub corners: &'a [DVec3],
-    /// The first three corners. A segment has no face.
-    pub face: Option<Triangle<'a>>,
-    /// Like [`Triangle::size`].
-    pub size: f64,
-    /// Distance, in sizes, by which a vertex may be off an edge and count as on it.
-    pub tie: f64,
 }
 
 /// Calls `found` with the corners of the overlap of a triangle and a polygon, seen along `normal`. Each has its points on both, the

@@ -4,13 +4,9 @@
 //! and edges of the polygon take the four SIMD lanes. Lanes beyond the last corner repeat the first one, so the next lane
 //! always has the next corner.
 
-use super::clip::Polygon;
-use super::triangle::{NEXT, Triangle};
+use super::triangle::{NEXT, Polygon, Triangle};
 use glamx::DVec3;
 use wide::f64x4;
-
-/// Corners of a polygon at most.
-pub(super) const MOST_CORNERS: usize = 4;
 
 /// Signs of all lanes against a vertex or an edge of the triangle.
 struct Sides {

@@ -1,4 +1,4 @@
-//! A triangle with its edges.
+//! A triangle with its edges, and a polygon of a shape.
 
 use super::feature::Feature;
 use glamx::DVec3;
@@ -144,6 +144,20 @@ impl<'a> Triangle<'a> {
         let [a, b, c] = self.heights(origin, axis);
         [a.min(b).min(c), a.max(b).max(c)]
     }
+}
+
+/// Corners of a polygon at most.
+pub(super) const MOST_CORNERS: usize = 4;
+
+/// A plane polygon of up to four corners, or a segment.
+pub(super) struct Polygon<'a> {
+    pub corners: &'a [DVec3],
+    /// The first three corners. A segment has no face.
+    pub face: Option<Triangle<'a>>,
+    /// Like [`Triangle::size`].
+    pub size: f64,
+    /// Distance, in sizes, by which a vertex may be off an edge and count as on it.
+    pub tie: f64,
 }
 
 /// The vertex or edge after each one.

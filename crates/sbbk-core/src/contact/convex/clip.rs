@@ -1,9 +1,8 @@
 //! The contact points of a triangle and a face or edge of a convex shape that it meets.
 
 use crate::contact::Feature;
-use crate::contact::clip::{Polygon, clip_polygon};
-use crate::contact::shadow_signs::MOST_CORNERS;
-use crate::contact::triangle::Triangle;
+use crate::contact::clip::clip_polygon;
+use crate::contact::triangle::{MOST_CORNERS, Polygon, Triangle};
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
