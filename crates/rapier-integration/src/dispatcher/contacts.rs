@@ -79,14 +79,15 @@ impl SbbkDispatcher {
                 if is_new && are_apart() {
                     return Some(Kind::Apart);
                 }
-                return Some(Kind::Triangles(self.view(meshes)?.map(ShapeView::Mesh)));
+                let shapes = [self.view(mesh1)?, self.view(mesh2)?];
+                return Some(Kind::Triangles(shapes.map(ShapeView::Mesh)));
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return None,
         };
         if let Some(field) = other.as_heightfield().filter(|_| kinds.height_fields) {
-            let ([mesh], field) = (self.view([mesh])?, Field(field));
+            let (mesh, field) = (self.view(mesh)?, Field(field));
             if is_new && !field.is_near(&mesh, &mesh_place.mesh_in_shape(pos12), prediction) {
                 return Some(Kind::Apart);
             }
@@ -104,8 +105,7 @@ impl SbbkDispatcher {
         if !Parts::are_supported(other) {
             return None;
         }
-        let [mesh] = self.view([mesh])?;
-        Some(Kind::Convex(mesh, parts, mesh_place))
+        Some(Kind::Convex(self.view(mesh)?, parts, mesh_place))
     }
 }
 

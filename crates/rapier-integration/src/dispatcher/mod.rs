@@ -121,17 +121,14 @@ impl SbbkDispatcher {
         self.store.release_idle();
     }
 
-    /// Returns views of meshes; `None`, and counts the query, if only Parry can answer.
-    fn view<'a, const COUNT: usize>(
-        &'a self,
-        meshes: [&'a TriMesh; COUNT],
-    ) -> Option<[MeshView<'a>; COUNT]> {
-        let views = meshes.map(|mesh| self.store.view(mesh));
-        if views.iter().any(Option::is_none) {
+    /// Returns a view of a mesh; `None`, and counts the query, if only Parry can answer.
+    #[inline]
+    fn view<'a>(&'a self, mesh: &'a TriMesh) -> Option<MeshView<'a>> {
+        let view = self.store.view(mesh);
+        if view.is_none() {
             self.store.counters.unsupported.raise();
-            return None;
         }
-        Some(views.map(|view| view.expect("all are there")))
+        view
     }
 }
 

@@ -33,14 +33,13 @@ impl SbbkDispatcher {
             [Some(mesh1), Some(mesh2)] => {
                 let meshes = self.config.kinds.meshes.then_some([mesh1, mesh2])?;
                 // Before all else: most pairs that a host asks about are apart.
-                return match apart {
-                    Some((distance, apart))
-                        if TwoMeshes::new(meshes, pos12).are_apart(distance) =>
-                    {
-                        answer(apart)
-                    }
-                    _ => answer(then(Query::Meshes(MeshQuery::new(self.view(meshes)?, pos12)))),
-                };
+                if let Some((distance, apart)) = apart
+                    && TwoMeshes::new(meshes, pos12).are_apart(distance)
+                {
+                    return answer(apart);
+                }
+                let views = [self.view(mesh1)?, self.view(mesh2)?];
+                return answer(then(Query::Meshes(MeshQuery::new(views, pos12))));
             }
             [Some(mesh), None] => (mesh, g2, MeshPlace::First),
             [None, Some(mesh)] => (mesh, g1, MeshPlace::Second),
@@ -56,8 +55,7 @@ impl SbbkDispatcher {
             return answer(apart);
         }
         let convex = ConvexShape::of(other)?;
-        let [mesh] = self.view([mesh])?;
-        let search = ConvexSearch::new(mesh, other, convex, mesh_place, pos12);
+        let search = ConvexSearch::new(self.view(mesh)?, other, convex, mesh_place, pos12);
         answer(then(Query::Convex(search)))
     }
 }

@@ -30,7 +30,7 @@ pub(super) fn triangles_near(
             let (normal, height) = plane(&placed.placement, half_space, magnitude, margin);
             visit(mesh, |node| lowest(node, normal) <= height, counters, found);
         }
-        ConvexShape::Ball(_) if !placed.placement.is_finite() => {}
+        ConvexShape::Ball(_) if !placed.origin_in_mesh.is_finite() => {}
         ConvexShape::Ball(ball) => {
             let centre = placed.origin_in_mesh.as_vec3();
             visit(mesh, near_ball(centre, ball.radius + margin, magnitude), counters, found);

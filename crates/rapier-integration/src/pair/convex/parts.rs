@@ -244,24 +244,12 @@ impl PlacedPart {
         placements: [&Placement; 2],
         extent: Extent,
     ) -> Self {
-        let [&(mut placement), inverse] = placements;
-        let mut origin_in_mesh = inverse.translation;
+        let [placement, inverse] = placements;
         // In f64: a product of poses in f32 is off by 1e-7 of the distance.
-        if let Some(part) = part.pose {
-            placement = Placement::new(part).inverted().of(&placement);
-            origin_in_mesh = placement.inverted().translation;
-        }
+        let posed = part.pose.map(|part| Placement::new(part).inverted().of(placement));
+        let origin_in_mesh = posed.map_or(inverse.translation, |it| it.inverted().translation);
+        let placement = posed.unwrap_or(*placement);
         Self { index, extent, placement, origin_in_mesh, has_mesh_axes: false }
-    }
-
-    /// Gives a ball the axes of the mesh.
-    #[inline(always)]
-    pub(super) fn in_mesh_axes(mut self, shape: ConvexShape<'_>) -> Self {
-        self.has_mesh_axes = matches!(shape, ConvexShape::Ball(_));
-        if self.has_mesh_axes && !self.placement.is_finite() {
-            self.origin_in_mesh = DVec3::NAN;
-        }
-        self
     }
 
     /// Returns this part, a whole shape, at another pose of shape 2 in the frame of shape 1.

@@ -142,14 +142,15 @@ impl ConvexQuery<'_> {
         if parts.len() <= slot {
             parts.resize_with(slot + 1, || None);
         }
-        if parts[slot].as_ref().is_some_and(|placed| placed.index != index) {
-            parts[slot] = None;
-        }
-        parts[slot].get_or_insert_with(|| {
+        let is_known = parts[slot].as_ref().is_some_and(|placed| placed.index == index);
+        if !is_known {
             let placements = self.pair.mesh_place.placements(self.pair.pose);
-            PlacedPart::new(index, part, placements, self.part_data.extent(index, part))
-                .in_mesh_axes(part.shape)
-        })
+            let extent = self.part_data.extent(index, part);
+            let has_mesh_axes = matches!(part.shape, ConvexShape::Ball(_));
+            let placed = PlacedPart::new(index, part, placements, extent);
+            parts[slot] = Some(PlacedPart { has_mesh_axes, ..placed });
+        }
+        parts[slot].as_ref().expect("the part was placed just now")
     }
 }
 
