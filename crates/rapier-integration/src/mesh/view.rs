@@ -10,7 +10,7 @@ use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
-use parry3d::query::{PointQuery, Ray, RayCast};
+use parry3d::query::{PointQuery, Ray, RayCast, RayIntersection};
 use parry3d::shape::{CompositeShape, FeatureId, Shape, TriMesh};
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
@@ -116,13 +116,27 @@ pub(super) fn nearest(
 /// Greatest number of parts of a mesh that [`exit`] leaves one after another.
 const MOST_PARTS: usize = 8;
 
+/// Returns the first triangle that a ray meets within a length, and where. Faster than Parry's cast with a normal, which divides
+/// for each box.
+pub(crate) fn first_hit(mesh: &TriMesh, ray: &Ray, within: Real) -> Option<(u32, RayIntersection)> {
+    let hit =
+        |triangle| mesh.triangle(triangle).cast_local_ray_and_get_normal(ray, Real::MAX, false);
+    let time = |triangle, _| Some(hit(triangle)?.time_of_impact);
+    let (triangle, _) = mesh.bvh().cast_ray(ray, within, time)?;
+    Some((triangle, hit(triangle)?))
+}
+
 /// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
-/// `outward` is the sign with which normals lead out of a solid, whose parts may overlap; `None` for a sheet. Returns `None` if
-/// the ray meets nothing, or first meets the outer side of a solid's triangle.
-pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, outward: Option<f64>) -> Option<(Real, Vec3)> {
+/// `first_hit` casts rays on the shape. `outward` is the sign with which normals lead out of a solid, whose parts may overlap;
+/// `None` for a sheet. Returns `None` if the ray meets nothing, or first meets the outer side of a solid's triangle.
+pub(crate) fn exit(
+    first_hit: impl Fn(&Ray) -> Option<RayIntersection>,
+    ray: &Ray,
+    outward: Option<f64>,
+) -> Option<(Real, Vec3)> {
     let next = |from: Real| {
         let rest = Ray::new(ray.origin + from * ray.dir, ray.dir);
-        let hit = shape.cast_local_ray_and_get_normal(&rest, Real::MAX, false)?;
+        let hit = first_hit(&rest)?;
         // Parry calls the back face 1, and turns normals against the ray.
         let is_back = hit.feature == FeatureId::Face(1);
         let leaves = outward.is_none_or(|outward| is_back == (outward > 0.0));
@@ -275,6 +289,11 @@ impl<'a> MeshView<'a> {
         }
         let (_, nearest, _) = nearest(self.mesh, point, |_| false)?;
         Some(nearest.distance(point))
+    }
+
+    /// Returns where a ray from a point inside leaves the mesh, see [`exit`].
+    pub(crate) fn exit(&self, ray: &Ray, outward: Option<f64>) -> Option<(Real, Vec3)> {
+        exit(|ray| Some(first_hit(self.mesh, ray, Real::MAX)?.1), ray, outward)
     }
 
     /// Returns the triangles for whose boxes, and the boxes above them, `overlaps` returns true.

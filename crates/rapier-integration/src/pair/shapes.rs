@@ -19,7 +19,7 @@ use sbbk_core::volumes::rounding::gamma;
 use super::field::Field;
 use super::pose::{Moving, PairPose};
 use super::reduce::FILTERED;
-use crate::mesh::{LazySurface, MeshFacets, MeshView, exit};
+use crate::mesh::{LazySurface, MeshFacets, MeshView, exit, first_hit};
 
 /// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
 /// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
@@ -372,8 +372,11 @@ impl<'q> TriangleShape<'q> {
     pub(super) fn exit(&self, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
         let outward = (!is_sheet).then(|| self.outward());
         match self {
-            Self::Mesh(mesh) => exit(mesh.view.mesh, ray, outward),
-            Self::Field(FieldShape { field, .. }) => exit(field.0, ray, outward),
+            Self::Mesh(mesh) => mesh.view.exit(ray, outward),
+            Self::Field(FieldShape { field, .. }) => {
+                let cast = |ray: &Ray| field.0.cast_local_ray_and_get_normal(ray, Real::MAX, false);
+                exit(cast, ray, outward)
+            }
         }
     }
 
@@ -416,10 +419,7 @@ impl<'q> TriangleShape<'q> {
     /// Returns the first triangle that a ray meets within a length, the length, and the cosine of the angle with the normal.
     pub(super) fn first_met(&self, ray: &Ray, within: Real) -> Option<(u32, Real, Real)> {
         let (triangle, hit) = match self {
-            Self::Mesh(mesh) => {
-                let shape = CompositeShapeRef(mesh.view.mesh);
-                shape.cast_local_ray_and_get_normal(ray, within, false)?
-            }
+            Self::Mesh(mesh) => first_hit(mesh.view.mesh, ray, within)?,
             Self::Field(FieldShape { field, .. }) => {
                 let hit = field.0.cast_local_ray_and_get_normal(ray, within, false)?;
                 let place = ray.point_at(hit.time_of_impact);

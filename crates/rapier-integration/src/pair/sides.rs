@@ -20,7 +20,7 @@ use super::shapes::{
     TriangleSurfaceContact, filter_distance, filter_unit,
 };
 use super::ways::SAME_SIDE;
-use crate::mesh::{BEHIND, LazySurface, MeshView, exit, is_covered};
+use crate::mesh::{BEHIND, LazySurface, MeshView, is_covered};
 
 /// Greatest depth of a body's middle behind a sheet that still pushes it to the front, in half
 /// heights of the body. Higher: bodies from behind are pulled through; lower: bodies that hit a
@@ -270,7 +270,7 @@ impl<'a> HeldMesh<'a> {
     fn is_lower(&self, height: Real, point: Vector, exit: Vector, outward: f64) -> bool {
         let most = height - exit.distance(point);
         let ray = Ray::new(point, (point - exit).normalize_or_zero());
-        self::exit(self.holder.mesh, &ray, Some(outward)).is_some_and(|(length, _)| length < most)
+        self.holder.exit(&ray, Some(outward)).is_some_and(|(length, _)| length < most)
     }
 
     /// Returns the nearest point of the larger mesh, and the room that it may be, if a point of the smaller one is inside. `point`
