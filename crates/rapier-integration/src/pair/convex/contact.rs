@@ -55,6 +55,38 @@ impl PartContact {
     }
 }
 
+/// Computes with the support map of a shape without its rounding radius; `None` for a half-space. `hull` keeps the points of a
+/// convex polyhedron from call to call.
+macro_rules! with_core {
+    ($shape:expr, $hull:expr, |$core:ident| $compute:expr) => {{
+        macro_rules! of {
+            ($support:expr) => {{
+                let $core = $support;
+                Some($compute)
+            }};
+        }
+        match $shape {
+            ConvexShape::Ball(_) => of!(&PointSupport(DVec3::ZERO)),
+            ConvexShape::HalfSpace(_) => None,
+            ConvexShape::Cuboid(cuboid) => of!(&cuboid_support(cuboid)),
+            ConvexShape::Features { shape, .. } => match shape.as_typed_shape() {
+                TypedShape::Segment(shape) => of!(&segment_support(shape)),
+                TypedShape::Capsule(shape) => of!(&segment_support(&shape.segment)),
+                TypedShape::Triangle(shape) => of!(&triangle_support(shape)),
+                TypedShape::RoundTriangle(shape) => of!(&triangle_support(&shape.inner_shape)),
+                TypedShape::Cylinder(shape) => of!(&cylinder_support(shape)),
+                TypedShape::RoundCylinder(shape) => of!(&cylinder_support(&shape.inner_shape)),
+                TypedShape::Cone(shape) => of!(&cone_support(shape)),
+                TypedShape::RoundCone(shape) => of!(&cone_support(&shape.inner_shape)),
+                TypedShape::RoundCuboid(shape) => of!(&cuboid_support(&shape.inner_shape)),
+                TypedShape::ConvexPolyhedron(shape) => of!($hull.of(shape)),
+                TypedShape::RoundConvexPolyhedron(shape) => of!($hull.of(&shape.inner_shape)),
+                _ => None,
+            },
+        }
+    }};
+}
+
 /// Contact of a triangle with a shape without its rounding radius, in the frame of the shape. `hull`
 /// keeps the points of a convex polyhedron from call to call. Boxes are compared first.
 pub(super) fn core_contact(
@@ -70,7 +102,7 @@ pub(super) fn core_contact(
     if let ConvexShape::HalfSpace(half_space) = shape {
         return half_space_contact(triangle, half_space.normal.as_dvec3(), margin);
     }
-    with_core(shape, hull, TriangleContact { triangle, margin })?
+    with_core!(shape, hull, |core| convex_contact(triangle, core, margin))?
 }
 
 /// Support point of a shape without its rounding radius, in f64; `None` for a half-space.
@@ -79,39 +111,7 @@ pub(super) fn core_support(
     hull: &KeptHull,
     direction: DVec3,
 ) -> Option<DVec3> {
-    with_core(shape, hull, SupportPoint(direction))
-}
-
-/// A computation with the support map of a shape without its rounding radius.
-trait OfCore {
-    type Output;
-
-    fn of<S: SupportMap>(self, core: &S) -> Self::Output;
-}
-
-struct TriangleContact<'a> {
-    triangle: &'a [DVec3; 3],
-    margin: f64,
-}
-
-impl OfCore for TriangleContact<'_> {
-    type Output = Option<ConvexContact>;
-
-    #[inline(always)]
-    fn of<S: SupportMap>(self, core: &S) -> Option<ConvexContact> {
-        convex_contact(self.triangle, core, self.margin)
-    }
-}
-
-struct SupportPoint(DVec3);
-
-impl OfCore for SupportPoint {
-    type Output = DVec3;
-
-    #[inline(always)]
-    fn of<S: SupportMap>(self, core: &S) -> DVec3 {
-        core.support(self.0)
-    }
+    with_core!(shape, hull, |core| core.support(direction))
 }
 
 /// Contact of a triangle with the centre of a ball.
@@ -134,31 +134,6 @@ pub(super) fn core_touches(
             && convex_touches(triangle, hull.of(shape), reach);
     }
     core_contact(placed, triangle, shape, hull, reach).is_some()
-}
-
-/// Computes with the support map of a shape; `None` for a half-space.
-#[inline(always)]
-fn with_core<C: OfCore>(shape: ConvexShape<'_>, hull: &KeptHull, compute: C) -> Option<C::Output> {
-    let shape = match shape {
-        ConvexShape::Ball(_) => return Some(compute.of(&PointSupport(DVec3::ZERO))),
-        ConvexShape::HalfSpace(_) => return None,
-        ConvexShape::Cuboid(cuboid) => return Some(compute.of(&cuboid_support(cuboid))),
-        ConvexShape::Features { shape, .. } => shape,
-    };
-    Some(match shape.as_typed_shape() {
-        TypedShape::Segment(shape) => compute.of(&segment_support(shape)),
-        TypedShape::Capsule(shape) => compute.of(&segment_support(&shape.segment)),
-        TypedShape::Triangle(shape) => compute.of(&triangle_support(shape)),
-        TypedShape::RoundTriangle(shape) => compute.of(&triangle_support(&shape.inner_shape)),
-        TypedShape::Cylinder(shape) => compute.of(&cylinder_support(shape)),
-        TypedShape::RoundCylinder(shape) => compute.of(&cylinder_support(&shape.inner_shape)),
-        TypedShape::Cone(shape) => compute.of(&cone_support(shape)),
-        TypedShape::RoundCone(shape) => compute.of(&cone_support(&shape.inner_shape)),
-        TypedShape::RoundCuboid(shape) => compute.of(&cuboid_support(&shape.inner_shape)),
-        TypedShape::ConvexPolyhedron(shape) => compute.of(hull.of(shape)),
-        TypedShape::RoundConvexPolyhedron(shape) => compute.of(hull.of(&shape.inner_shape)),
-        _ => return None,
-    })
 }
 
 fn segment_support(segment: &Segment) -> SegmentSupport {
