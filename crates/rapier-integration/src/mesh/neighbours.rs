@@ -258,14 +258,14 @@ impl RayTriangles for MeshRays<'_> {
             let [low, high] =
                 [node.mins(), node.maxs()].map(|corner| (corner.as_dvec3() - start) * inverse);
             let (first, last) = (low.min(high).max_element(), low.max(high).min_element());
-            last >= 0.0 && first <= last + ROUNDING * last
+            last >= 0.0 && first <= last + RAY_ROUNDING * last
         };
         let _ = self.0.bvh().leaves(is_met).try_for_each(visit);
     }
 }
 
 /// Rounding of the lengths at which rays meet boxes.
-const ROUNDING: f64 = 1.0e-12;
+const RAY_ROUNDING: f64 = 1.0e-12;
 
 /// The twins of the edges of a triangle, and its flags.
 #[derive(Clone, Debug, Default)]

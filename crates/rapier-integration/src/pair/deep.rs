@@ -31,14 +31,14 @@ const INSET: f64 = 1.0e-3;
 /// Greatest gap of a closed contour, and distance of a flat one from its plane, as a share of its length. Higher: contours
 /// of surfaces with holes are closed, and those around edges flat. Lower: soups have no contours, and rounding makes flat
 /// faces uneven.
-const TOLERANCE: f64 = 1e-3;
+const UNEVEN: f64 = 1e-3;
 
 /// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all their way. Lower: bodies deep
 /// in others turn and sink.
 const DEPTH_PER_LENGTH: f64 = 0.5;
 
 /// Greatest number of points of a contour. Higher: more time; lower: bodies turn about the chosen ones.
-const MOST_POINTS: usize = 6;
+const CONTOUR_POINTS: usize = 6;
 
 /// A part of a contour, where two triangles cross.
 #[derive(Copy, Clone)]
@@ -98,7 +98,7 @@ fn cut(corners: &[DVec3; 3], normal: DVec3, on: DVec3, along: DVec3) -> Option<[
 }
 
 /// Points of an overlap, and the segments that stand for them.
-type Points<'s> = ArrayVec<(&'s Segment, DVec3), MOST_POINTS>;
+type Points<'s> = ArrayVec<(&'s Segment, DVec3), CONTOUR_POINTS>;
 
 /// A closed contour.
 struct Contour<'s> {
@@ -129,7 +129,7 @@ impl<'s> Contour<'s> {
         });
         let (area, swept) =
             areas.fold((DVec3::ZERO, 0.0), |(area, swept), one| (area + one, swept + one.length()));
-        let is_closed = gap.length() <= TOLERANCE * length;
+        let is_closed = gap.length() <= UNEVEN * length;
         let normal = area.normalize_or_zero();
         let mut ends = segments.iter().flat_map(|one| one.ends);
         (is_closed && area.length() > COHERENT * swept).then(|| Self {
@@ -138,7 +138,7 @@ impl<'s> Contour<'s> {
             most: DEPTH_PER_LENGTH * length,
             middle: middle - inset / length * outward,
             normal,
-            is_flat: ends.all(|end| (end - middle).dot(normal).abs() <= TOLERANCE * length),
+            is_flat: ends.all(|end| (end - middle).dot(normal).abs() <= UNEVEN * length),
         })
     }
 
@@ -179,14 +179,14 @@ struct Way {
     /// Greatest depth along the way.
     length: f64,
     /// Distances from each point to where shape 1 ends along the way, and shape 2 against it.
-    exits: ArrayVec<Option<[f64; 2]>, MOST_POINTS>,
+    exits: ArrayVec<Option<[f64; 2]>, CONTOUR_POINTS>,
 }
 
 /// An island of two shapes that are deep in each other.
 struct DeepIsland<'a> {
     shapes: &'a TriangleShapes<'a>,
     /// True for each shape that may be left through both sides of its triangles.
-    is_sheet: [bool; 2],
+    is_two_way: [bool; 2],
 }
 
 /// Adds contacts along the ways out of contours to islands that have too few, or whose contacts push farther.
@@ -206,8 +206,8 @@ pub(super) fn add_contacts(
         );
         let Some(contour) = Contour::of(segments) else { continue };
         let points = contour.points();
-        let is_sheet = [0, 1].map(|i| island.iter().any(|crossing| crossing.is_sheet[i]));
-        let deep = DeepIsland { shapes, is_sheet };
+        let is_two_way = [0, 1].map(|i| island.iter().any(|crossing| crossing.is_two_way[i]));
+        let deep = DeepIsland { shapes, is_two_way };
         let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
             continue;
         };
@@ -217,7 +217,7 @@ pub(super) fn add_contacts(
         contacts.extend(points.iter().zip(exits).filter_map(|((segment, point), exits)| {
             Some((segment.pair, deep.contact_across(segment.pair, *point, normal, exits?)?))
         }));
-        let way = IslandWay { normal, length, is_exact: contour.is_flat, is_sheet };
+        let way = IslandWay { normal, length, is_exact: contour.is_flat, is_two_way };
         islands.set_way(island[0].island, way);
     }
 }
@@ -238,7 +238,7 @@ pub(super) fn pushes_farther(
     }
     let Some([origin, ..]) = shapes[0].corners(pair[0]) else { return false };
     let middle = origin.as_dvec3() + 0.5 * (contact.point1 + contact.point2);
-    let exits = DeepIsland { shapes, is_sheet: way.is_sheet }.exits(middle, way.normal);
+    let exits = DeepIsland { shapes, is_two_way: way.is_two_way }.exits(middle, way.normal);
     // Points of a contact along a wrong way may be beyond the shapes.
     exits.is_none_or(|[(one, _), (two, _)]| one + two <= ALIKE * way.length)
 }
@@ -293,9 +293,9 @@ impl DeepIsland<'_> {
         let rotation = pos12.rotation;
         let at2 = pos12.inverse_transform_point(point);
         let against2 = rotation.inverse() * -direction;
-        let [is_sheet1, is_sheet2] = self.is_sheet;
-        let exit1 = self.shapes[0].exit(&Ray::new(point, direction), is_sheet1)?;
-        let (length2, normal2) = self.shapes[1].exit(&Ray::new(at2, against2), is_sheet2)?;
+        let [is_two_way1, is_two_way2] = self.is_two_way;
+        let exit1 = self.shapes[0].exit(&Ray::new(point, direction), is_two_way1)?;
+        let (length2, normal2) = self.shapes[1].exit(&Ray::new(at2, against2), is_two_way2)?;
         let exits = [exit1, (length2, rotation * normal2)];
         Some(exits.map(|(length, normal)| (f64::from(length), normal.as_dvec3())))
     }

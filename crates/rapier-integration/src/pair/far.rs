@@ -21,14 +21,14 @@ use super::surface::{SurfaceFilter, Verdict};
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
-const STEPS: usize = 32;
+const STEPS_TO_NEAREST: usize = 32;
 
 /// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher: thin plates with
 /// soft CCD turn through sheets. Lower: small bodies are stopped by triangles ahead.
 const SAME_FAR_DIRECTION: f64 = 0.97;
 
 /// Triangles of each mesh from which rays look ahead. Higher: more time. Lower: small parts of fine meshes are met late.
-const AHEAD: usize = 128;
+const RAYS_AHEAD: usize = 128;
 
 /// Square of the ratio of sizes from which the larger mesh does not look ahead. Higher: slow on large terrains. Lower: small parts
 /// meet the teeth of larger ones late.
@@ -150,7 +150,7 @@ impl TriangleShapes<'_> {
                 continue;
             }
             let (count, signs) = (view.mesh.indices().len(), self[i].ways_out());
-            let looks = AHEAD.min(count);
+            let looks = RAYS_AHEAD.min(count);
             let triangles = (0..looks).map(|k| (k * count / looks) as u32);
             for (triangle, &sign) in triangles.flat_map(|t| signs.iter().map(move |s| (t, s))) {
                 self.ahead(i, triangle, sign).into_iter().for_each(&mut *found);
@@ -181,7 +181,7 @@ impl TriangleShapes<'_> {
     /// Walks on from a contact. The first step starts at the point of shape `i`.
     fn walked(&self, mut i: usize, mut hit: TriangleHit) -> TriangleHit {
         let mut is_nearest = false;
-        for _ in 0..STEPS {
+        for _ in 0..STEPS_TO_NEAREST {
             let known = distance(&hit);
             let next = self.step(i, &hit, known).filter(|next| distance(next) < known);
             // A step moves both points, so the walk ends only where no step of either shape gains.

@@ -56,7 +56,7 @@ pub(super) struct IslandWay {
     /// True if all of the contour is in a plane across the way.
     pub(super) is_exact: bool,
     /// True for each shape that may be left through both sides of its triangles.
-    pub(super) is_sheet: [bool; 2],
+    pub(super) is_two_way: [bool; 2],
 }
 
 impl IslandWay {
@@ -111,7 +111,7 @@ pub(super) struct Crossing {
     /// Signs with which the normals of the triangles lead out of the shapes; `None` for a sheet.
     pub(super) outward: [Option<f64>; 2],
     /// True for each triangle of a sheet, and for one that is wound unlike most of the shape.
-    pub(super) is_sheet: [bool; 2],
+    pub(super) is_two_way: [bool; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
     /// True if the contact of the first pass pushes the wrong way.
@@ -146,7 +146,7 @@ impl Crossing {
 
     /// Returns the depth of a contact that pushes far out of a solid, or zero.
     fn far_depth(&self) -> f64 {
-        let is_far = self.sheet.is_none() && self.depth > FAR * self.greatest;
+        let is_far = self.sheet.is_none() && self.depth > ASKS_CONTOUR * self.greatest;
         if is_far { self.depth } else { 0.0 }
     }
 
@@ -172,7 +172,7 @@ const SAME_WAY: f64 = 0.9999;
 
 /// Share of the greatest depth of a contact from which a contour may know a shorter way. Higher: edges that cross push each other
 /// aside. Lower: more time for bodies in each other.
-const FAR: f64 = 0.5;
+const ASKS_CONTOUR: f64 = 0.5;
 
 impl OverlapIslands {
     /// Begins the first pass of a query.

@@ -22,10 +22,12 @@ mod update;
 mod ways;
 mod write;
 
-pub(crate) use convex::{ConvexPair, ConvexSearch, ConvexShape, FoundTriangle, Parts, PlacedPart};
+pub(crate) use convex::{
+    ConvexPair, ConvexSearch, ConvexShape, FoundTriangle, Parts, PlacedPart, WIDE,
+};
 pub(crate) use descents::BvhDescent;
 pub(crate) use field::Field;
-pub(crate) use pose::{MeshPlace, PairPose};
+pub(crate) use pose::{MeshPlace, PairPose, ROUNDING, STRETCH};
 pub use triangle_contacts::TriangleContacts;
 pub(crate) use triangles::{MeshPair, ShapeView};
 pub(crate) use update::update_manifolds;

@@ -140,7 +140,7 @@ impl Limits {
     /// Returns true if a candidate may be within reach.
     #[inline(always)]
     pub(super) fn may_touch<H>(&self, candidate: &Candidate<H>) -> bool {
-        candidate.clear <= self.reach + self.travel
+        candidate.touches_at <= self.reach + self.travel
     }
 }
 
@@ -193,7 +193,7 @@ pub(crate) struct Candidate<H> {
     pub(super) subshapes: [u32; 2],
     /// Lower bound of the distance plus the travel of the pair, both at the last measurement. The sum minus the present
     /// travel is a lower bound of the present distance.
-    pub(super) clear: f64,
+    pub(super) touches_at: f64,
     /// Makes the next contact cheaper. Never changes the contact.
     pub(super) hint: H,
 }
@@ -201,7 +201,7 @@ pub(crate) struct Candidate<H> {
 impl<H: Default> Candidate<H> {
     /// A candidate at an unknown distance.
     pub(super) fn new(subshapes: [u32; 2]) -> Self {
-        Self { subshapes, clear: f64::NEG_INFINITY, hint: H::default() }
+        Self { subshapes, touches_at: f64::NEG_INFINITY, hint: H::default() }
     }
 }
 

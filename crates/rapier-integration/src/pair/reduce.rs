@@ -41,11 +41,11 @@ pub(super) const EQUAL_DEPTH: Real = 0.02;
 /// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a step, so
 /// [`PatchPlan::equal_depth`] grows with the square of their ratio. Higher: cones on uneven ground stay awake. Lower: coins stand on
 /// one arc of the rim, and turn through floors.
-const SMALL: Real = 20.0;
+const SMALL_RADIUS: Real = 20.0;
 
 /// Share of the depth of the deepest point that counts like [`PatchPlan::equal_depth`] where points are chosen. Higher: points
 /// that hover replace points that carry. Lower: thin discs stand on one arc of the rim, and turn through floors.
-const SUNK: Real = 0.5;
+const DEPTH_SHARE: Real = 0.5;
 
 /// [`PatchPlan::one_normal`]. Lower: threads of a screw lock.
 const ONE_NORMAL: Real = 0.99999;
@@ -87,7 +87,7 @@ impl PatchPlan {
     /// Plan for a mesh and a convex shape, which may have a round rim.
     pub(super) fn of_convex(prediction: Real, radius: Real) -> Self {
         let plan = Self::new(prediction, radius);
-        let small = (SMALL * prediction / radius).max(1.0);
+        let small = (SMALL_RADIUS * prediction / radius).max(1.0);
         Self { equal_depth: small * small * plan.equal_depth, ..plan }
     }
 
@@ -115,7 +115,7 @@ pub(crate) struct ContactSummary {
     pub(super) point: Vec3,
     pub(super) distance: Real,
     /// Distance from `point` that no point of the contact exceeds.
-    pub(super) reach: Real,
+    pub(super) spread: Real,
 }
 
 /// Memory for contact reduction.
@@ -214,7 +214,7 @@ impl Reduction {
             places.extend(members.iter().map(|Member { summary: of, .. }| (of.point, of.distance)));
             outermost.choose(plan, places, |i| members[i].summary.normal);
             for (i, member) in members.iter_mut().enumerate() {
-                let excess = member.summary.reach - plan.size;
+                let excess = member.summary.spread - plan.size;
                 let is_needed = outermost.chosen.contains(&i)
                     || excess > 0.0 && !is_inside(&outermost.hull, outermost.flat[i], excess);
                 member.patch = if is_needed { member.patch } else { NO_PATCH };
@@ -260,7 +260,8 @@ impl Outermost {
         }
         self.begin(plan, points, normal);
         let deepest = points[0].1;
-        let equal_depth = plan.equal_depth + SUNK * (-deepest).max(0.0);
+        let equal_depth = plan.equal_depth + DEPTH_SHARE * (-deepest).max(0.0);
+        // Zero until there is a second point.
         let mut least = 0.0;
         loop {
             let is_full = self.chosen.len() >= MOST_POINTS;

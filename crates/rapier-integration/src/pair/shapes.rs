@@ -369,8 +369,8 @@ impl<'q> TriangleShape<'q> {
 
     /// Returns the distance in which a ray from a point inside leaves the shape, and the outward normal there. `None`
     /// if the ray meets nothing, or first meets the front of a solid's triangle.
-    pub(super) fn exit(&self, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
-        let outward = (!is_sheet).then(|| self.outward());
+    pub(super) fn exit(&self, ray: &Ray, is_two_way: bool) -> Option<(Real, Vector)> {
+        let outward = (!is_two_way).then(|| self.outward());
         match self {
             Self::Mesh(mesh) => mesh.view.exit(ray, outward),
             Self::Field(FieldShape { field, .. }) => {

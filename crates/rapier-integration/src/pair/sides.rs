@@ -95,7 +95,7 @@ const STICKS_OUT: Real = 0.5;
 
 /// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in tenths of its
 /// radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into solids.
-const SUNK: f64 = 0.5;
+const ROOM_DEPTH: f64 = 0.5;
 
 /// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low halls. Lower: small fast
 /// bodies fall through floors and walls that are solids.
@@ -181,7 +181,7 @@ impl<'a> HeldMesh<'a> {
             return room;
         }
         let middle = self.in_holder(ball.centre);
-        let Some((exit, room)) = self.exit(middle, test) else {
+        let Some((exit, room)) = self.room_around(middle, test) else {
             return if self.is_behind_wall(middle, test) { Room::FacingIn } else { Room::No };
         };
         let slack = match room {
@@ -223,7 +223,7 @@ impl<'a> HeldMesh<'a> {
         let height = self.held.height(self.way_to(exit), depth / (1.0 - STICKS_OUT));
         let unit = filter_unit(self.pose, filter_distance(true, self.held.ball().radius));
         let is_in_room = depth >= (1.0 - STICKS_OUT) * height
-            && f64::from(depth + height) >= SUNK * unit
+            && f64::from(depth + height) >= ROOM_DEPTH * unit
             && !self.is_lower(self.least_height(), middle, exit, 1.0)
             && !self.surface.is_declared_solid();
         // No test above depends on more than this depth. At half the height of a room, the other half is beyond.
@@ -275,7 +275,7 @@ impl<'a> HeldMesh<'a> {
 
     /// Returns the nearest point of the larger mesh, and the room that it may be, if a point of the smaller one is inside. `point`
     /// is in the frame of the larger mesh.
-    fn exit(&self, point: Vector, test: &mut InsideTest) -> Option<(Vector, Room)> {
+    fn room_around(&self, point: Vector, test: &mut InsideTest) -> Option<(Vector, Room)> {
         let Self { holder, surface, .. } = self;
         let placement = self.placement();
         let from_box = holder.root().distance_to_local_point(point, true);
@@ -312,7 +312,7 @@ impl<'a> HeldMesh<'a> {
         if room != Room::No || known == Some(Room::No) {
             return None;
         }
-        self.exit(vertex, test)?;
+        self.room_around(vertex, test)?;
         if surface.kind() == SurfaceKind::Sheet {
             *test = InsideTest::NoSolid;
             return None;

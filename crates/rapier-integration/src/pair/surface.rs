@@ -29,11 +29,11 @@ use crate::mesh::BEHIND;
 /// Greatest depth of a contact of the first pass, in least translations of its triangles or, if
 /// more, in prediction distances. Parry's number for constrained normals. Higher: bodies are pushed
 /// out on their far sides; lower: more second passes.
-const SHALLOW: f64 = 5.0;
+const TRUSTED_DEPTH: f64 = 5.0;
 
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are turned
 /// in vain; lower: slanted contacts keep their normals.
-const UPRIGHT: f64 = 0.999_999;
+const ALONG_NORMAL: f64 = 0.999_999;
 
 /// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through sheets
 /// that face away from them. Lower: rods and plates sink through sheets.
@@ -46,7 +46,7 @@ const WITHIN: f64 = 0.01;
 
 /// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
 /// are. Higher: contacts are lost; lower: triangles that touch count as crossing.
-const TOUCHING: f64 = 1.0e-9;
+const SIDE_ROUNDING: f64 = 1.0e-9;
 
 /// Result of the first pass for two triangles.
 pub(super) enum Verdict {
@@ -237,11 +237,11 @@ impl<'a> SurfaceFilter<'a> {
         let is_solid = self.are_solid();
         let is_crossing = contact.features.is_crossing();
         let shallow = self.shapes.filter_unit();
-        let greatest = SHALLOW * contact.distance.abs().max(shallow);
+        let greatest = TRUSTED_DEPTH * contact.distance.abs().max(shallow);
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
         let extremal = self.outward().extremal(ends, greatest, clipped);
         let good = extremal.contact();
-        if good.is_none() && !is_crossing && self.is_touching(contact, TOUCHING) {
+        if good.is_none() && !is_crossing && self.is_touching(contact, SIDE_ROUNDING) {
             return Verdict::None;
         }
         let (normal, depth) =
@@ -261,7 +261,7 @@ impl<'a> SurfaceFilter<'a> {
             normal,
             depth,
             outward,
-            is_sheet: [0, 1].map(|i| outward[i] != Some(self.shapes[i].outward())),
+            is_two_way: [0, 1].map(|i| outward[i] != Some(self.shapes[i].outward())),
             sheet,
             is_rejected: false,
             island: 0,
@@ -372,7 +372,7 @@ impl<'a> SurfaceFilter<'a> {
         }
         let (up, height) = self.middle_over(i);
         let up = if height < 0.0 { -up } else { up };
-        let is_upright = up.dot([contact.normal, -contact.normal][i]) > UPRIGHT;
+        let is_upright = up.dot([contact.normal, -contact.normal][i]) > ALONG_NORMAL;
         let place = self.place(i, contact);
         if up == DVec3::ZERO
             || is_upright
@@ -458,7 +458,7 @@ impl<'a> SurfaceFilter<'a> {
     /// Returns true if a contact is deep since a point is far inside, not since this triangle is on
     /// the far side of its body.
     fn is_far_inside(&self, contact: &TriangleContact) -> bool {
-        let within = (-contact.distance / SHALLOW) as Real;
+        let within = (-contact.distance / TRUSTED_DEPTH) as Real;
         (0..2).any(|i| {
             let point = self.in_shape(i, [contact.point2, contact.point1][i]).as_vec3();
             self.shapes[i].nearest(point).is_some_and(|(nearest, behind)| {

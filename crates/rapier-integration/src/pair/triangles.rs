@@ -357,8 +357,8 @@ impl PairQuery for TriangleQuery<'_> {
             self.points(hit, scratch, points);
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
         }
-        let reach = side1.min(side2) as Real;
-        Some(ContactSummary { part: 0, normal, point, distance, reach })
+        let spread = side1.min(side2) as Real;
+        Some(ContactSummary { part: 0, normal, point, distance, spread })
     }
 
     #[inline(always)]
@@ -400,7 +400,8 @@ impl TriangleQuery<'_> {
         let pair = candidate.subshapes;
         let Some(local) = self.shapes.local(pair) else { return };
         let contact = contact_of(&local, limits.margin, candidate.hint);
-        candidate.clear = contact.map_or(limits.margin, |contact| contact.distance) + limits.travel;
+        candidate.touches_at =
+            contact.map_or(limits.margin, |contact| contact.distance) + limits.travel;
         let Some(contact) = contact else { return };
         candidate.hint = Some(contact.features);
         if contact.distance > limits.reach {

@@ -11,7 +11,7 @@ use super::reduce::EQUAL_DEPTH;
 
 /// Greatest depth of resting bodies, in filter distances: a fiftieth of the radius. Higher: bodies deep in others leave along one way. Lower:
 /// heavy bodies stop at gaps.
-pub(super) const SMALL: f64 = 0.2;
+pub(super) const RESTING_DEPTH: f64 = 0.2;
 
 /// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor let go. Lower: edges that cross push
 /// each other aside.

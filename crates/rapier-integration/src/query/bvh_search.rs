@@ -11,18 +11,7 @@ use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair, best_first};
 use sbbk_core::traverse::Placement;
 
 use crate::mesh::MeshView;
-use crate::pair::BvhDescent;
-
-/// Share of the coordinates by which bounds are lower than computed, for rounding in f64.
-const ROUNDING: f64 = 1.0e-14;
-
-/// Share by which a length may be greater in the frame of mesh 2. Quaternions in f32 are not of unit
-/// length.
-const STRETCH: f64 = 1.0e-6;
-
-/// Limit, as a share of the smaller mesh's radius, above which [`BvhSearch::deepest`] first searches for a pair that
-/// touches. Changes time alone. Higher: slower far from the mesh; lower: slower near it.
-const WIDE: f64 = 0.1;
+use crate::pair::{BvhDescent, ROUNDING, STRETCH, WIDE};
 
 /// Two meshes, mesh 2 at a placement in the frame of mesh 1.
 #[derive(Copy, Clone)]

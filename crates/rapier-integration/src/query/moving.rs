@@ -14,12 +14,12 @@ use sbbk_core::surface::area_vector;
 use sbbk_core::traverse::Placement;
 
 use super::Found;
-use super::nonlinear::{NonlinearCast, approach_bound, place, reach, turned};
-use crate::pair::ConvexSearch;
+use super::nonlinear::{NonlinearCast, approach_bound, lever, place, turned};
+use crate::pair::{ConvexSearch, STRETCH};
 
 /// Duration of the first window, as a multiple of the time in which the nearest triangle may be met.
 /// Higher: more triangles that are not met are advanced; lower: more windows.
-const AHEAD: f64 = 4.0;
+const WINDOW: f64 = 4.0;
 
 /// Steps along one plane. Higher: fewer contacts are computed; lower: planes that have turned away
 /// are left sooner.
@@ -90,7 +90,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         }
         let reach = (speed_bound * (end - from)).max(0.0) + tolerance;
         let distance = self.search.nearest(reach)?.contact.distance.max(1.0e3 * tolerance);
-        let window = (AHEAD * distance / speed_bound).max(2.0 * previous);
+        let window = (WINDOW * distance / speed_bound).max(2.0 * previous);
         // An infinite or unknown speed bounds nothing.
         Some(if window > 0.0 { window } else { f64::INFINITY })
     }
@@ -111,7 +111,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
             return Some((search.aabb_in_mesh(), velocity));
         }
         let centre = search.placed.in_mesh(shape.local_center.as_dvec3());
-        let reach = (reach(shape, &ball) * (1.0 + 1.0e-6)) as Real;
+        let reach = (lever(shape, &ball) * (1.0 + STRETCH)) as Real;
         Some((Aabb::from_half_extents(centre, Vec3::splat(reach)), velocity))
     }
 
@@ -217,8 +217,8 @@ struct MovingTriangle<'a> {
     moving: &'a MovingConvex<'a, 'a>,
     triangle: u32,
     corners: [DVec3; 3],
-    /// Reach of the triangle and of the shape from the centres of their motions.
-    reaches: [f64; 2],
+    /// Levers of the triangle and of the shape.
+    levers: [f64; 2],
     /// Bound on the acceleration of points against the other body, as they turn.
     acceleration: f64,
 }
@@ -231,10 +231,10 @@ impl<'a> MovingTriangle<'a> {
         let centre = motions[0].local_center.as_dvec3();
         let farthest = corners.iter().map(|corner| corner.distance(centre)).fold(0.0, f64::max);
         let [_, ball] = search.balls();
-        let reaches = [farthest, reach(motions[1], &ball)];
+        let levers = [farthest, lever(motions[1], &ball)];
         let turns = motions.map(|motion| motion.angvel.as_dvec3());
-        let acceleration = (0..2).map(|i| turns[i].length() * turned(turns[i], reaches[i])).sum();
-        Self { moving, triangle, corners, reaches, acceleration }
+        let acceleration = (0..2).map(|i| turns[i].length() * turned(turns[i], levers[i])).sum();
+        Self { moving, triangle, corners, levers, acceleration }
     }
 
     /// Returns the time for which a plane `depth` below the triangle separates it from the shape. It is
@@ -293,16 +293,16 @@ impl<'a> MovingTriangle<'a> {
     /// A second bound replaces the shape by a ball that does not turn.
     fn clear_by_speed(&self, axis: DVec3, from: f64) -> f64 {
         let [mesh, shape] = self.moving.motions();
-        let clear = |gap: f64, reaches: [f64; 2]| {
-            let speed = approach_bound([shape, mesh], axis, [reaches[1], reaches[0]]);
+        let clear = |gap: f64, levers: [f64; 2]| {
+            let speed = approach_bound([shape, mesh], axis, [levers[1], levers[0]]);
             // The maximum of a number and a NaN is the number: 0 may be divided by 0.
             ((gap - self.moving.options.tolerance).max(0.0) / speed).max(0.0)
         };
         let [lowest, _] = self.heights(axis, from);
         let centre = place(shape, from).to_frame1(shape.local_center, Vec3::ZERO);
-        let of_ball = lowest - axis.dot(centre) - self.reaches[1];
-        let of_shape = clear(self.gap(axis, from), self.reaches);
-        of_shape.max(clear(of_ball, [self.reaches[0], 0.0]))
+        let of_ball = lowest - axis.dot(centre) - self.levers[1];
+        let of_shape = clear(self.gap(axis, from), self.levers);
+        of_shape.max(clear(of_ball, [self.levers[0], 0.0]))
     }
 
     fn gap(&self, axis: DVec3, time: f64) -> f64 {
@@ -318,7 +318,7 @@ impl<'a> MovingTriangle<'a> {
         let [a, b, c] = self.corners.map(|corner| in_mesh.dot(corner));
         let lowest = a.min(b).min(c) + axis.dot(mesh.translation);
         let in_shape: DVec3 = shape.rotation.transpose() * axis;
-        [lowest, search.reach(in_shape) + axis.dot(shape.translation)]
+        [lowest, search.height_along(in_shape) + axis.dot(shape.translation)]
     }
 }
 

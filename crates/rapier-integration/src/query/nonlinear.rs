@@ -8,6 +8,7 @@ use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
 use super::Found;
+use crate::pair::STRETCH;
 
 /// Distance at which bodies have met, as a share of the radius of the smaller body. Higher: fewer steps,
 /// earlier impacts; lower: more steps.
@@ -26,9 +27,6 @@ const LOOKS: (f64, f64) = (10.0, 100.0);
 /// Rotation between two samples, in radians. Higher: a long body may look the same in each sample;
 /// lower: more samples.
 const TURN: f64 = 0.5;
-
-/// Allowance for quaternions in f32 that are not of unit length, as a share of the speed.
-const STRETCH: f64 = 1.0e-6;
 
 /// A cast of two bodies in motion.
 #[derive(Copy, Clone)]
@@ -85,11 +83,11 @@ impl NonlinearCast<'_> {
     /// The centres of motions move in straight lines. With `c` and `v` from centre 1 to centre 2, the times solve
     /// `|c + v t| = R`. Here `R` is the sum of the radii.
     fn meeting_of_balls(&self, balls: [Sphere; 2], options: &AdvanceOptions) -> Option<[f64; 2]> {
-        let [reach1, reach2] = [0, 1].map(|i| reach(self.motions[i], &balls[i]));
+        let [lever1, lever2] = [0, 1].map(|i| lever(self.motions[i], &balls[i]));
         let [from1, from2] = self.motions.map(centre);
         let [velocity1, velocity2] = self.motions.map(|motion| motion.linvel.as_dvec3());
         let (between, velocity) = (from2 - from1, velocity2 - velocity1);
-        let radius = (reach1 + reach2) * (1.0 + STRETCH) + options.tolerance;
+        let radius = (lever1 + lever2) * (1.0 + STRETCH) + options.tolerance;
         let speed2 = velocity.length_squared();
         let square = radius * radius * speed2 - between.cross(velocity).length_squared();
         if square < 0.0 || speed2 == 0.0 && between.length() > radius {
@@ -118,17 +116,17 @@ impl NonlinearCast<'_> {
     /// Returns a bound on the speed of points of one body against the other.
     ///
     /// Let `v` be the velocity of centre 2 against centre 1, `w` the angular velocity of a body, and
-    /// `r` its reach. Then `|v| + |w1| r1 + |w2| r2` is a bound. In the frame of body 1 another bound is
+    /// `r` its lever. Then `|v| + |w1| r1 + |w2| r2` is a bound. In the frame of body 1 another bound is
     /// `|v - w1 × c| + |w2 - w1| r2`, with `c` from centre 1 to centre 2. The vector `c` is linear in
-    /// time, so this bound is greatest at the start or at the end. It does not depend on the reach of
+    /// time, so this bound is greatest at the start or at the end. It does not depend on the lever of
     /// body 1, so it is finite for a half-space that turns. A third bound swaps the bodies.
     fn speed_bound(&self, balls: [Sphere; 2]) -> f64 {
         let [motion1, motion2] = self.motions;
-        let [reach1, reach2] = [0, 1].map(|i| reach(self.motions[i], &balls[i]));
+        let [lever1, lever2] = [0, 1].map(|i| lever(self.motions[i], &balls[i]));
         let [turn1, turn2] = self.motions.map(|motion| motion.angvel.as_dvec3());
         let [from1, from2] = self.motions.map(centre);
         let velocity = motion2.linvel.as_dvec3() - motion1.linvel.as_dvec3();
-        let seen = |turn: DVec3, reach: f64| {
+        let seen = |turn: DVec3, lever: f64| {
             let fastest = [self.start, self.end].map(|time| {
                 let between = from2 - from1 + moved(velocity, time.into());
                 let turning = if turn == DVec3::ZERO { DVec3::ZERO } else { turn.cross(between) };
@@ -136,11 +134,11 @@ impl NonlinearCast<'_> {
             });
             // `max` would drop the NaN of an infinite time.
             let [start, end] = fastest;
-            (if end <= start { start } else { end }) + turned(turn2 - turn1, reach)
+            (if end <= start { start } else { end }) + turned(turn2 - turn1, lever)
         };
         // `min` drops NaN.
-        let in_space = velocity.length() + turned(turn1, reach1) + turned(turn2, reach2);
-        let least = in_space.min(seen(turn1, reach2)).min(seen(turn2, reach1));
+        let in_space = velocity.length() + turned(turn1, lever1) + turned(turn2, lever2);
+        let least = in_space.min(seen(turn1, lever2)).min(seen(turn2, lever1));
         least * (1.0 + STRETCH)
     }
 
@@ -173,7 +171,7 @@ impl NonlinearCast<'_> {
 }
 
 /// Returns the greatest distance of a ball around a body from the centre of its motion.
-pub(super) fn reach(motion: &NonlinearRigidMotion, ball: &Sphere) -> f64 {
+pub(super) fn lever(motion: &NonlinearRigidMotion, ball: &Sphere) -> f64 {
     (motion.local_center - ball.centre).as_dvec3().length() + f64::from(ball.radius)
 }
 
@@ -185,17 +183,17 @@ pub(super) fn reach(motion: &NonlinearRigidMotion, ball: &Sphere) -> f64 {
 pub(super) fn approach_bound(
     [one, two]: [&NonlinearRigidMotion; 2],
     axis: DVec3,
-    reaches: [f64; 2],
+    levers: [f64; 2],
 ) -> f64 {
     let linear = (one.linvel.as_dvec3() - two.linvel.as_dvec3()).dot(axis);
     let turns = [one, two].map(|motion| axis.cross(motion.angvel.as_dvec3()));
-    let least = linear + turned(turns[0], reaches[0]) + turned(turns[1], reaches[1]);
+    let least = linear + turned(turns[0], levers[0]) + turned(turns[1], levers[1]);
     least.max(0.0) * (1.0 + STRETCH)
 }
 
-/// Returns `|turn| * reach`, which is 0 for no turn even if the reach is infinite.
-pub(super) fn turned(turn: DVec3, reach: f64) -> f64 {
-    if turn == DVec3::ZERO { 0.0 } else { turn.length() * reach }
+/// Returns `|turn| * lever`, which is 0 for no turn even if the lever is infinite.
+pub(super) fn turned(turn: DVec3, lever: f64) -> f64 {
+    if turn == DVec3::ZERO { 0.0 } else { turn.length() * lever }
 }
 
 /// Returns `velocity * time`, which is 0 for no velocity even if the time is infinite.

@@ -21,7 +21,7 @@ use crate::pair::pose::MeshPlace;
 
 /// Bodies that are this much farther than the target at the start are within it, as a share of size. At this share
 /// of their speed they do not approach. Contacts within this may count as touching.
-const TOUCHING: f64 = 1.0e-10;
+const WITHIN_TARGET: f64 = 1.0e-10;
 
 /// Bodies that are this much farther than the target have arrived, as a share of size and travel.
 /// Higher: less exact times; lower: contacts of bodies that touch, which take longer.
@@ -97,7 +97,7 @@ impl ConvexSearch<'_> {
         let start = self.placed.in_part(self.mesh.corners(triangle));
         let (size, target) = (self.size(&start), f64::from(options.target_distance.max(0.0)));
         let cast = TriangleCast { search: self, triangle, start, size, velocity, target, latest };
-        match cast.plane_at_start().filter(|apart| apart.left > TOUCHING * size) {
+        match cast.plane_at_start().filter(|apart| apart.left > WITHIN_TARGET * size) {
             Some(apart) => cast.advance(apart),
             None => cast.at_start(options.stop_at_penetration),
         }
@@ -141,11 +141,11 @@ impl TriangleCast<'_> {
     fn at_start(&self, stop_at_penetration: bool) -> Option<Cast<FoundTriangle>> {
         let contact = self.contact(0.0)?;
         let left = contact.distance - self.target;
-        if left > TOUCHING * self.size {
+        if left > WITHIN_TARGET * self.size {
             return self.advance(Apart { time: 0.0, left, normal: contact.normal });
         }
         let approach = self.approach(contact.normal);
-        let counts = stop_at_penetration || approach > TOUCHING * self.velocity.length();
+        let counts = stop_at_penetration || approach > WITHIN_TARGET * self.velocity.length();
         let is_penetrating = contact.distance < self.target;
         counts.then(|| Cast { time: 0.0, pair: self.found(contact), is_penetrating })
     }
@@ -163,7 +163,7 @@ impl TriangleCast<'_> {
                 time = apart.time + (time - apart.time) * apart.left / (apart.left - left);
             } else {
                 let radius = f64::from(self.search.convex.radius());
-                if contact.distance + radius <= TOUCHING * self.size {
+                if contact.distance + radius <= WITHIN_TARGET * self.size {
                     // Bodies that touch have no better normal than those just apart.
                     contact.normal = apart.normal;
                 }

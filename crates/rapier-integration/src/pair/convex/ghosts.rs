@@ -37,7 +37,7 @@ use super::contact::{Hit, PartContact};
 
 /// Share of the size by which two distances must differ to count as different. Higher: ghosts stay.
 /// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
-const EQUAL: f64 = 1.0e-12;
+const ROUNDED: f64 = 1.0e-12;
 
 /// Contacts at a feature that may be of a floor. Higher: slow at the hub of a fan. Lower: walls are ghosts where many triangles meet.
 const CROWD: usize = 64;
@@ -84,8 +84,8 @@ struct Corner {
     start: u32,
     /// The contact with the least distance.
     nearest: u32,
-    /// A contact at this corner, and the result of `is_passed` for it.
-    passed: Option<(u32, bool)>,
+    /// A contact at this corner, and the result of `is_exceeded` for it.
+    exceeded: Option<(u32, bool)>,
     /// Strays of the first contact at this corner that had to know.
     strays: Option<Strays>,
     /// True if a triangle has an edge here that no other contact has.
@@ -132,7 +132,7 @@ fn nearest_of(contacts: &[Hit], first: u32, others: impl IntoIterator<Item = u32
 fn push_apart(contacts: &[Hit]) -> bool {
     let mut normals = contacts.iter().map(|(_, hit)| hit.contact.normal);
     let Some(first) = normals.next() else { return false };
-    normals.any(|normal| first.dot(normal) < FRAC_1_SQRT_2 + EQUAL)
+    normals.any(|normal| first.dot(normal) < FRAC_1_SQRT_2 + ROUNDED)
 }
 
 /// Returns the corners of an edge, or a vertex twice.
@@ -166,7 +166,7 @@ impl GhostContacts {
                 continue;
             }
             let size = own.on_triangle.abs().max_element() + own.distance.abs();
-            let is_nearer = |other: u32| distance(contacts, other) < own.distance - EQUAL * size;
+            let is_nearer = |other: u32| distance(contacts, other) < own.distance - ROUNDED * size;
             let mut nearest = self.nearest(contacts, contact, *feature);
             let mut range = [0; 2];
             if !is_nearer(nearest) {
@@ -183,7 +183,7 @@ impl GhostContacts {
             } else if is_nearer(nearest) {
                 self.sources[contact as usize] = nearest;
             } else if own.distance < 0.0
-                && self.is_passed(contacts, contact, range, &mut extends_beyond)
+                && self.is_exceeded(contacts, contact, range, &mut extends_beyond)
             {
                 self.on_faces.push(contact);
             }
@@ -241,8 +241,8 @@ impl GhostContacts {
         for (start, &entry) in (0..).zip(&*entries) {
             let nearest = contact_of(entry);
             if last_key.replace(entry >> 64) != Some(entry >> 64) {
-                let (passed, strays, is_border) = (None, None, None);
-                corners.push(Corner { start, nearest, passed, strays, is_border });
+                let (exceeded, strays, is_border) = (None, None, None);
+                corners.push(Corner { start, nearest, exceeded, strays, is_border });
             }
             let corner = corners.len() - 1;
             triangles[nearest as usize][usize::from(entry as u8)] = corner as u32;
@@ -334,7 +334,7 @@ impl GhostContacts {
     }
 
     /// Returns true if a triangle at the feature of a contact extends beyond it along its normal.
-    fn is_passed(
+    fn is_exceeded(
         &mut self,
         contacts: &[Hit],
         contact: u32,
@@ -344,22 +344,22 @@ impl GhostContacts {
         let PartContact { contact: ref own, feature, .. } = contacts[contact as usize].1;
         let [one, _] = ends(feature).map(|end| self.triangles[contact as usize][end]);
         // All triangles at a vertex that is deepest have the same contact.
-        if let (Feature::Vertex(_), Some((other, is_passed))) =
-            (feature, self.corners[one as usize].passed)
+        if let (Feature::Vertex(_), Some((other, is_exceeded))) =
+            (feature, self.corners[one as usize].exceeded)
         {
             let other = &contacts[other as usize].1.contact;
             if (other.on_triangle, other.normal) == (own.on_triangle, own.normal) {
-                return is_passed;
+                return is_exceeded;
             }
         }
-        let is_passed = self
+        let is_exceeded = self
             .at_feature(contact, feature)
             .chain(self.strays_in(strays))
             .any(|other| extends_beyond(contacts[other as usize].0, own));
         if let Feature::Vertex(_) = feature {
-            self.corners[one as usize].passed = Some((contact, is_passed));
+            self.corners[one as usize].exceeded = Some((contact, is_exceeded));
         }
-        is_passed
+        is_exceeded
     }
 
     /// Lists a contact and then all others whose triangles share a corner with its triangle.

@@ -38,7 +38,7 @@ impl ConvexQuery<'_> {
             let corners = placed.in_part(mesh.corners(mesh_place.swap(of)[0]));
             let lowest = half_space_contact(&corners, normal, limits.margin);
             let distance = lowest.map_or(limits.margin, |contact| contact.distance);
-            candidate.clear = distance + limits.travel;
+            candidate.touches_at = distance + limits.travel;
             if lowest.is_none() || distance > prediction {
                 continue;
             }

@@ -158,9 +158,9 @@ impl ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
     ) {
         for i in 0..ghosts.on_faces.len() {
-            let passed = ghosts.on_faces[i];
-            ghosts.list_nearby(passed);
-            let (of, own) = contacts[passed as usize];
+            let exceeded = ghosts.on_faces[i];
+            ghosts.list_nearby(exceeded);
+            let (of, own) = contacts[exceeded as usize];
             let [_, part] = self.pair.mesh_place.swap(of);
             let is_crossing = |&other: &u32| contacts[other as usize].1.contact.distance < 0.0;
             let face = ghosts.nearby.iter().copied().filter(is_crossing).find_map(|other| {
@@ -175,7 +175,8 @@ impl ConvexQuery<'_> {
                 let all = 0..contacts.len() as u32;
                 ghosts.nearby.extend(all.filter(is_of_part).filter(is_crossing));
             }
-            contacts[passed as usize].1 = self.least_deep(ghosts, contacts, passed, face, scratch);
+            contacts[exceeded as usize].1 =
+                self.least_deep(ghosts, contacts, exceeded, face, scratch);
         }
     }
 
@@ -184,11 +185,11 @@ impl ConvexQuery<'_> {
         &self,
         ghosts: &GhostContacts,
         contacts: &[Hit],
-        passed: u32,
+        exceeded: u32,
         face: PartContact,
         scratch: &mut ConvexScratch,
     ) -> PartContact {
-        let (of, own) = contacts[passed as usize];
+        let (of, own) = contacts[exceeded as usize];
         let [_, part] = self.pair.mesh_place.swap(of);
         let hull = self.part_data.hull(part);
         let is_solid =

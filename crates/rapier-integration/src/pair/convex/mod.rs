@@ -26,5 +26,5 @@ mod walls;
 
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::{Parts, PlacedPart};
-pub(crate) use search::{ConvexSearch, FoundTriangle};
+pub(crate) use search::{ConvexSearch, FoundTriangle, WIDE};
 pub(crate) use shape::ConvexShape;

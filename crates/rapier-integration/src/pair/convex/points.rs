@@ -212,7 +212,7 @@ static TRIANGLE: LazyLock<PolygonalFeature> =
 
 /// Angle at the centre of a ball by which a ray may miss a triangle and still hit. A ray at an edge must
 /// not miss both triangles because of rounding.
-const BESIDE: f64 = 1.0e-6;
+const RAY_SLACK: f64 = 1.0e-6;
 
 /// Returns the length of a ray from the origin along a unit vector to a triangle, if it hits.
 ///
@@ -221,7 +221,7 @@ pub(super) fn ray_length(corners: &[DVec3; 3], direction: DVec3) -> Option<f64> 
     let ([a, b, c], normal) = (*corners, area_vector(corners));
     let length = a.dot(normal) / direction.dot(normal);
     let beside = |v: DVec3, w: DVec3| {
-        let slack = BESIDE * v.length() * w.length();
+        let slack = RAY_SLACK * v.length() * w.length();
         let volume = v.cross(w).dot(direction);
         [volume >= -slack, volume <= slack]
     };
@@ -229,7 +229,7 @@ pub(super) fn ray_length(corners: &[DVec3; 3], direction: DVec3) -> Option<f64> 
     let is_hit = (0..2).any(|sign| sides.iter().all(|side| side[sign]));
     // Rounding may put a centre on the triangle behind it.
     let size = a.length() + b.length() + c.length();
-    (is_hit && length >= -BESIDE * size && length.is_finite()).then_some(length)
+    (is_hit && length >= -RAY_SLACK * size && length.is_finite()).then_some(length)
 }
 
 /// Stored: Parry's constructor is not inlined.

@@ -46,7 +46,7 @@ impl<'q> ConvexQuery<'q> {
             }
             let corners @ [a, ..] = placed.in_part(self.pair.mesh.corners(triangle));
             let normal = area_vector(&corners).try_normalize()?;
-            let reach = |direction: DVec3| placed.extent.reach(shape.shape, direction);
+            let reach = |direction: DVec3| placed.extent.height_along(shape.shape, direction);
             let [above, below] = [reach(normal) - normal.dot(a), reach(-normal) + normal.dot(a)];
             if above >= below {
                 return None;

@@ -65,7 +65,7 @@ pub(crate) struct ConvexScratch {
     /// Parts at the pose of the query.
     parts: Vec<Option<PlacedPart>>,
     pub(super) ghosts: GhostContacts,
-    pub(super) walls: WallMemory,
+    pub(super) dropped: DroppedContacts,
     /// Parts with the distances of their contacts, and push-outs.
     pub(super) push_outs: (Vec<(u32, f64)>, ContactList<PartContact>),
     /// True for each vertex of the mesh that has a contact with a [half-space](super::half_space). All false between queries.
@@ -74,7 +74,7 @@ pub(crate) struct ConvexScratch {
 
 /// Memory for the search for [walls](super::walls).
 #[derive(Default)]
-pub(super) struct WallMemory {
+pub(super) struct DroppedContacts {
     /// True for each contact that is removed. Empty if none is.
     pub(super) removed: Vec<bool>,
     /// Contacts apart, the nearest first.
@@ -83,7 +83,7 @@ pub(super) struct WallMemory {
     pub(super) ways: Ways,
 }
 
-impl WallMemory {
+impl DroppedContacts {
     /// Marks one of `count` contacts.
     pub(super) fn mark(&mut self, index: usize, count: usize) {
         self.removed.resize(count, false);
@@ -299,14 +299,14 @@ impl PairQuery for ConvexQuery<'_> {
 impl ConvexQuery<'_> {
     /// Corrects ghosts, and removes contacts that lead past a border or that one way lifts over.
     fn correct(&self, contacts: &mut ContactList<PartContact>, scratch: &mut ConvexScratch) {
-        scratch.walls.removed.clear();
+        scratch.dropped.removed.clear();
         self.correct_ghosts(contacts, scratch);
         self.find_lifted(contacts, scratch);
-        let ConvexScratch { ghosts, walls, .. } = scratch;
+        let ConvexScratch { ghosts, dropped, .. } = scratch;
         for upright in ghosts.upright.iter().filter(|upright| upright.is_past) {
-            walls.mark(upright.index as usize, contacts.len());
+            dropped.mark(upright.index as usize, contacts.len());
         }
-        walls.remove_from(contacts);
+        dropped.remove_from(contacts);
     }
 
     /// Returns the normal of a contact in the axes of the mesh. A single part needs no common axes and keeps its own.
@@ -356,7 +356,7 @@ impl ConvexQuery<'_> {
             let reach = limits.margin + radius;
             let contact = core_contact(placed, &corners, shape, part_data.hull(part), reach);
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
-            candidate.clear = distance + limits.travel;
+            candidate.touches_at = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);
             contact.filter(|_| is_near).map(|contact| PartContact::new(contact, &corners))
         });

@@ -17,18 +17,15 @@ use super::near::{gap_of, lowest, time_of, triangles_near};
 use super::parts::{Part, PlacedPart};
 use super::shape::{ConvexShape, Extent, KeptHull};
 use crate::mesh::{MeshView, box_of};
-use crate::pair::pose::{MeshPlace, PairPose};
+use crate::pair::pose::{MeshPlace, PairPose, ROUNDING};
 
 /// Distance up to which bodies touch, as a share of their coordinates in the frame of the shape: the
 /// rounding of a distance of zero. Higher: bodies touch early; lower: rounding separates bodies.
 const TOUCHING: f64 = 1.0e-12;
 
-/// Rounding of heights in f64, as a share of coordinates.
-const ROUNDING: f64 = 1.0e-14;
-
-/// Limit, as a share of the shape's size, above which `deepest` first searches for the nearest triangle.
+/// Limit, as a share of the smaller body's size, above which searches for the deepest contact first look for one that is near.
 /// Changes time alone. Higher: slower far from the mesh; lower: slower near it.
-const WIDE: f64 = 0.1;
+pub(crate) const WIDE: f64 = 0.1;
 
 /// A mesh and one convex shape at a pose.
 pub(crate) struct ConvexSearch<'a> {
@@ -124,8 +121,8 @@ impl<'a> ConvexSearch<'a> {
     }
 
     /// Returns an upper bound of how far the shape reaches along a direction of any length.
-    pub(crate) fn reach(&self, direction: DVec3) -> f64 {
-        self.placed.extent.reach(self.convex, direction)
+    pub(crate) fn height_along(&self, direction: DVec3) -> f64 {
+        self.placed.extent.height_along(self.convex, direction)
     }
 
     /// Returns the box around the shape in the frame of the mesh.

@@ -180,7 +180,7 @@ impl Extent {
     ///
     /// Parry's support points are found in f32: they are off, or not the best, by a few roundings of the
     /// largest coordinate.
-    pub(super) fn reach(&self, shape: ConvexShape<'_>, direction: DVec3) -> f64 {
+    pub(super) fn height_along(&self, shape: ConvexShape<'_>, direction: DVec3) -> f64 {
         match shape {
             ConvexShape::Ball(ball) => f64::from(ball.radius) * direction.length(),
             ConvexShape::HalfSpace(half_space) => {

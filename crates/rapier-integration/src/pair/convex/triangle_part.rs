@@ -25,7 +25,7 @@ const AGAINST: f64 = -0.05;
 
 /// Greatest depth along the normal of a face, as a share of the height of the part, that never shows a part beyond the face.
 /// Higher: shapes over an edge of a box are pushed in. Lower: tips stumble over internal edges.
-const SHALLOW: f64 = 0.1;
+const HARDLY_BEHIND: f64 = 0.1;
 
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {
@@ -61,7 +61,7 @@ const BORDER_DEPTH: f64 = 0.5;
 
 /// Barycentric coordinate from which a point counts as within a triangle. Higher: rounding hides walls from what stands at
 /// their feet. Lower: walls have contacts above them.
-const BESIDE: f64 = 1.0e-4;
+const OVER_SLACK: f64 = 1.0e-4;
 
 impl TrianglePartPair<'_> {
     /// Returns the point of a contact in the frame of the mesh, and the distance up to which triangles
@@ -164,12 +164,12 @@ impl TrianglePartPair<'_> {
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
         }
         let part = if self.part.pose.is_some() { self.placed.index } else { 0 };
-        let reach = if self.pair.vertices_of().is_some() { 0.0 } else { self.reach() };
-        Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance, reach })
+        let spread = if self.pair.vertices_of().is_some() { 0.0 } else { self.spread() };
+        Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance, spread })
     }
 
     /// Returns a distance from a point of the contact that no other point exceeds.
-    fn reach(&self) -> Real {
+    fn spread(&self) -> Real {
         let side = longest_side(&self.corners.map(|corner| corner.as_dvec3()));
         (side as Real).min(2.0 * self.placed.extent.ball().radius)
     }
@@ -216,7 +216,7 @@ impl TrianglePartPair<'_> {
     }
 
     /// Returns the contact along the normal of the triangle, for another contact of the part. `None` if the bodies cross nowhere
-    /// along that normal, or if the contact leads against the other one and is not [`SHALLOW`].
+    /// along that normal, or if the contact leads against the other one and is not [`HARDLY_BEHIND`].
     pub(super) fn face_contact_for(&self, other: &ConvexContact) -> Option<ConvexContact> {
         let corners = &self.placed.in_part(self.corners);
         let (face, feature) = (self.face_contact(corners)?, Feature::Face);
@@ -225,10 +225,11 @@ impl TrianglePartPair<'_> {
         contact_points(corners, self.part.shape, &contact, None, 0.0, |point| {
             is_crossing |= point.distance < 0.0;
         });
-        let reach = |direction| self.placed.extent.reach(self.part.shape, direction);
+        let reach = |direction| self.placed.extent.height_along(self.part.shape, direction);
         let height = || reach(face.normal) + reach(-face.normal);
-        let is_safe =
-            || other.normal.dot(face.normal) >= AGAINST || -face.distance <= SHALLOW * height();
+        let is_safe = || {
+            other.normal.dot(face.normal) >= AGAINST || -face.distance <= HARDLY_BEHIND * height()
+        };
         (is_crossing && is_safe()).then_some(face)
     }
 
@@ -306,7 +307,7 @@ impl TrianglePartPair<'_> {
             return None;
         }
         let lifted = wall.on_shape + depth * floor.normal;
-        is_over(corners, lifted, BESIDE).then_some(wall)
+        is_over(corners, lifted, OVER_SLACK).then_some(wall)
     }
 
     /// Returns the contact of the part with the plane of the triangle, on the side of the part's middle.
@@ -315,7 +316,7 @@ impl TrianglePartPair<'_> {
         let normal = area_vector(corners).try_normalize()?;
         let middle = extent.ball().centre.as_dvec3();
         let normal = if normal.dot(middle - a) < 0.0 { -normal } else { normal };
-        let reach = extent.reach(*shape, -normal) - f64::from(shape.radius());
+        let reach = extent.height_along(*shape, -normal) - f64::from(shape.radius());
         let distance = -normal.dot(*a) - reach;
         let on_shape = match shape {
             ConvexShape::Features { map, .. } => {
@@ -357,7 +358,7 @@ fn within_edge(
     points: [DVec3; 2],
 ) -> Option<[DVec3; 3]> {
     /// Radii of the ball up to which the triangle reaches. Higher: less exact. Lower: shapes pass its ends.
-    const FAR: f64 = 8.0;
+    const WEDGE_REACH: f64 = 8.0;
     if one.dot(other) >= SAME_PUSH {
         return None;
     }
@@ -368,6 +369,6 @@ fn within_edge(
     let to_edge = heights[0] * other.cross(along) + heights[1] * along.cross(one);
     let edge = centre + to_edge / along.length_squared();
     let [along, inward] = [along.try_normalize()?, -(one + other).try_normalize()?];
-    let reach = FAR * radius;
+    let reach = WEDGE_REACH * radius;
     Some([edge - reach * along, edge + reach * along, edge + reach * inward])
 }

@@ -11,7 +11,9 @@ use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{LazySurface, is_covered};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{filter_distance, filter_unit};
-use crate::pair::ways::{SAME_DIRECTION, SAME_SIDE, SMALL, Ways, equal_height, greatest_overlap};
+use crate::pair::ways::{
+    RESTING_DEPTH, SAME_DIRECTION, SAME_SIDE, Ways, equal_height, greatest_overlap,
+};
 
 /// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher: bodies catch on walls behind
 /// the edge that they slide over. Lower: rounding decides about contacts along the surface.
@@ -19,7 +21,7 @@ const TANGENTIAL: f64 = 1.0e-4;
 
 /// Share of a distance by which an equal one may differ. Higher: contacts apart are lost. Lower: bodies catch on the foot of a step or chamfer
 /// that they slide over.
-const EQUAL: f64 = 1.0e-6;
+const AT_ONE_PLACE: f64 = 1.0e-6;
 
 impl ConvexQuery<'_> {
     /// Removes the contacts of triangles that have the body on both sides, those that lead into the body, and those behind these. Asks
@@ -36,15 +38,15 @@ impl ConvexQuery<'_> {
         {
             return;
         }
-        let mut removed = std::mem::take(&mut scratch.walls.removed);
+        let mut removed = std::mem::take(&mut scratch.dropped.removed);
         self.find_walls(surface, contacts, scratch, &mut removed);
         if removed.contains(&true) {
-            self.find_behind(contacts, 1.0 - EQUAL, scratch, &mut removed);
+            self.find_behind(contacts, 1.0 - AT_ONE_PLACE, scratch, &mut removed);
         } else {
             removed.clear();
         }
-        scratch.walls.removed = removed;
-        scratch.walls.remove_from(contacts);
+        scratch.dropped.removed = removed;
+        scratch.dropped.remove_from(contacts);
     }
 
     /// Returns true if a normal is farther from the first one than an angle.
@@ -96,7 +98,7 @@ impl ConvexQuery<'_> {
         removed: &mut [bool],
     ) {
         let distance = |i: usize| contacts[i].1.contact.distance;
-        let mut apart = std::mem::take(&mut scratch.walls.apart);
+        let mut apart = std::mem::take(&mut scratch.dropped.apart);
         apart.clear();
         let may_be_behind =
             |&i: &usize| self.depth(&contacts[i]) <= 0.0 && contacts[i].1.feature != Feature::Face;
@@ -120,7 +122,7 @@ impl ConvexQuery<'_> {
             }));
             removed[i] = is_behind;
         }
-        scratch.walls.apart = apart;
+        scratch.dropped.apart = apart;
     }
 
     /// Returns true if a contact leads into the body behind its triangle.
@@ -164,7 +166,7 @@ impl ConvexQuery<'_> {
         if !self.push_different_ways(contacts, SAME_DIRECTION, scratch) {
             return;
         }
-        let mut ways = std::mem::take(&mut scratch.walls.ways);
+        let mut ways = std::mem::take(&mut scratch.dropped.ways);
         self.find_ways(surface, contacts, &mut ways, scratch);
         let mut last = None;
         let mut is_lifted = |hit: &Hit, scratch: &mut ConvexScratch| {
@@ -180,15 +182,15 @@ impl ConvexQuery<'_> {
         };
         for (index, hit) in contacts.iter().enumerate() {
             if is_lifted(hit, scratch) {
-                scratch.walls.mark(index, contacts.len());
+                scratch.dropped.mark(index, contacts.len());
             }
         }
-        scratch.walls.ways = ways;
-        let mut removed = std::mem::take(&mut scratch.walls.removed);
+        scratch.dropped.ways = ways;
+        let mut removed = std::mem::take(&mut scratch.dropped.removed);
         if !removed.is_empty() {
-            self.find_behind(contacts, 1.0 + EQUAL, scratch, &mut removed);
+            self.find_behind(contacts, 1.0 + AT_ONE_PLACE, scratch, &mut removed);
         }
-        scratch.walls.removed = removed;
+        scratch.dropped.removed = removed;
     }
 
     /// Finds the ways that part each part from all triangles that it crosses. Contacts that hardly hover know ways, too.
@@ -207,7 +209,7 @@ impl ConvexQuery<'_> {
                 ways.add(part_of(*of), contact.normal, depth.max(0.0));
             }
         }
-        let small = SMALL * self.filter_distance();
+        let small = RESTING_DEPTH * self.filter_distance();
         for hit @ (of, PartContact { contact, .. }) in contacts {
             if self.depth(hit) > 0.0 {
                 let is_parted = |way, length| self.is_parted(surface, hit, (way, length), scratch);

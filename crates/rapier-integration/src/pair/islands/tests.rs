@@ -14,7 +14,7 @@ fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>)
         normal,
         depth,
         outward: [sheet.is_none().then_some(1.0), Some(1.0)],
-        is_sheet: [false; 2],
+        is_two_way: [false; 2],
         sheet,
         is_rejected: false,
         island: 0,

@@ -19,7 +19,7 @@ const PLAN: PatchPlan = PatchPlan {
 
 fn summary(x: Real, distance: Real) -> ContactSummary {
     let point = Vec3::new(x, 0.0, 0.0);
-    ContactSummary { part: 0, normal: Vec3::Y, point, distance, reach: 0.0 }
+    ContactSummary { part: 0, normal: Vec3::Y, point, distance, spread: 0.0 }
 }
 
 /// Would catch patches that mix parts, directions or places. A contact that carries must not be replaced by one that hovers.

@@ -9,12 +9,12 @@ use crate::pair::islands::OverlapIslands;
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
-use crate::pair::ways::{SAME_DIRECTION, SMALL, greatest_overlap};
+use crate::pair::ways::{RESTING_DEPTH, SAME_DIRECTION, greatest_overlap};
 
 impl TriangleQuery<'_> {
     /// Ends the first pass. Returns true if a second pass is needed.
     pub(super) fn finish_first_pass(&self, islands: &mut OverlapIslands) -> bool {
-        let small = SMALL * self.shapes.filter_distance;
+        let small = RESTING_DEPTH * self.shapes.filter_distance;
         let is_parted = |pair: [u32; 2], way: DVec3, length: f64| self.is_parted(pair, way, length);
         islands.finish_first_pass(small, is_parted)
     }
