@@ -1,7 +1,7 @@
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
 use sbbk_core::collections::UnionFind;
-use sbbk_core::contact::DoubleCone;
+use sbbk_core::surface::area_vector;
 
 use super::ways::{Directions, SAME_SIDE, Ways};
 
@@ -60,13 +60,10 @@ pub(super) struct IslandWay {
 }
 
 impl IslandWay {
-    /// Returns true if a contact of triangles pushes along the way.
-    fn has(self, normal: DVec3) -> bool {
-        self.normal.dot(normal) >= self.least_cosine()
-    }
-
-    fn least_cosine(self) -> f64 {
-        if self.is_exact { SAME_WAY } else { ALONG_WAY }
+    /// Returns the direction of the contact of two triangles: the way, turned a little to the direction out of both. Contacts of
+    /// Rapier are soft. One direction has four of them at most, and several directions carry more.
+    fn towards(&self, out: DVec3) -> DVec3 {
+        if self.is_exact { self.normal } else { (self.normal + OUTWARD * out).normalize() }
     }
 }
 
@@ -77,15 +74,19 @@ impl Support {
 
     /// Returns true for the normals of contacts that push neither against the reliable ones, nor through a sheet.
     pub(super) fn agrees(self, normal: DVec3) -> bool {
-        self.normals.dot(normal) >= 0.0
-            && self.sheet_side.dot(normal) >= 0.0
-            && self.way.is_none_or(|way| way.has(normal))
+        self.normals.dot(normal) >= 0.0 && self.sheet_side.dot(normal) >= 0.0
     }
 
-    /// Returns a cone around the normals that [`agrees`](Self::agrees) accepts, if the island has a way out.
-    pub(super) fn cone(self) -> Option<DoubleCone> {
-        let way = self.way?;
-        Some(DoubleCone { axis: way.normal, least_square: way.least_cosine().powi(2) })
+    /// Returns the direction of a contact of two triangles, if the island has a way out.
+    pub(super) fn direction(
+        &self,
+        crossing: &Crossing,
+        corners: &[[DVec3; 3]; 2],
+    ) -> Option<DVec3> {
+        let [sign1, sign2] = crossing.outward_signs().unwrap_or_default();
+        let [normal1, normal2] = corners.each_ref().map(|of| area_vector(of).normalize_or_zero());
+        let out = (sign1 * normal1 - sign2 * normal2).normalize_or_zero();
+        Some(self.way?.towards(out))
     }
 }
 
@@ -162,13 +163,9 @@ impl Crossing {
     }
 }
 
-/// Least cosine between the way out of an overlap and contacts of triangles there. Higher: heavy loads press
-/// bodies deeper. Lower: grippers spin what they hold.
-const ALONG_WAY: f64 = 0.97;
-
-/// Least cosine between an exact way out of an overlap and contacts along it. Higher: rounding removes contacts.
-/// Lower: round meshes that fall on flat floors are kicked aside.
-const SAME_WAY: f64 = 0.9999;
+/// Share of the direction out of two triangles in the direction of their contact, if the contour of the overlap is not flat. Higher:
+/// bodies that are deep in each other are pushed aside. Lower: heavy loads press bodies deeper.
+const OUTWARD: f64 = 0.3;
 
 /// Share of the greatest depth of a contact from which a contour may know a shorter way. Higher: edges that cross push each other
 /// aside. Lower: more time for bodies in each other.

@@ -323,9 +323,9 @@ impl<'a> SurfaceFilter<'a> {
         clipped: &mut ManifoldPoints,
     ) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let (has_extremal, cone) = (crossing.has_extremal, support.cone());
+        let has_extremal = crossing.has_extremal;
         let agrees = |normal: DVec3| support.agrees(normal);
-        let contact = self.outward().least(has_extremal, ends, cone, agrees, clipped)?;
+        let contact = self.outward().least(has_extremal, ends, agrees, clipped)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {

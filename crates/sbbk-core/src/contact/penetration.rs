@@ -61,11 +61,11 @@ impl Extremal {
 
 /// Directions, and their opposites, near an axis.
 #[derive(Copy, Clone, Debug)]
-pub struct DoubleCone {
+struct DoubleCone {
     /// Unit vector.
-    pub axis: DVec3,
+    axis: DVec3,
     /// Square of the least cosine between the axis and a direction.
-    pub least_square: f64,
+    least_square: f64,
 }
 
 impl DoubleCone {
@@ -119,18 +119,16 @@ impl<'t> Outward<'t> {
     /// Returns the contact along the outward axis of least overlap, if a contact with that normal `may_count`. Extremal axes
     /// come first.
     ///
-    /// `has_extremal` is false if no axis is extremal. Contacts that count are within `cone`, if given. The other parameters
-    /// are those of [`extremal`](Self::extremal).
+    /// `has_extremal` is false if no axis is extremal. See [`extremal`](Self::extremal) for `is_extremal` and `out`.
     pub fn least(
         &self,
         has_extremal: bool,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-        cone: Option<DoubleCone>,
         may_count: impl Fn(DVec3) -> bool,
         out: &mut ManifoldPoints,
     ) -> Option<TriangleContact> {
         let mut widest = None;
-        self.for_each(cone.as_slice(), |direction, _| {
+        self.for_each(&[], |direction, _| {
             let (gap, axis) = self.axis(direction);
             if may_count(axis) {
                 widest = Some(widest.map_or(gap, |known: f64| known.max(gap)));
@@ -269,13 +267,29 @@ impl<'t> Outward<'t> {
         }
     }
 
-    /// Returns the contact along an axis; `None` if no points are in line with the axis.
     fn contact_along(&self, axis: DVec3, out: &mut ManifoldPoints) -> Option<TriangleContact> {
-        let [t1, t2] = &self.triangles;
-        clip_triangles(t1, t2, axis, out);
-        let contact = deepest(out, axis)?;
-        Some(TriangleContact { features: contact.features.crossing(), ..contact })
+        along(self.triangles.each_ref(), axis, out)
     }
+}
+
+/// Returns the contact of overlapping triangles along a unit axis by which triangle 2 leaves triangle 1. `None` if no points are
+/// in line with the axis. `out` gets the contact points, as from [`clip`](super::clip).
+pub fn contact_along(
+    triangles: [&[DVec3; 3]; 2],
+    axis: DVec3,
+    out: &mut ManifoldPoints,
+) -> Option<TriangleContact> {
+    along(triangles.map(Triangle::new).each_ref(), axis, out)
+}
+
+fn along(
+    [t1, t2]: [&Triangle<'_>; 2],
+    axis: DVec3,
+    out: &mut ManifoldPoints,
+) -> Option<TriangleContact> {
+    clip_triangles(t1, t2, axis, out);
+    let contact = deepest(out, axis)?;
+    Some(TriangleContact { features: contact.features.crossing(), ..contact })
 }
 
 /// Returns signs with which edges run through a plane; 0 if nearly parallel.

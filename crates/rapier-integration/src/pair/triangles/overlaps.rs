@@ -1,11 +1,12 @@
 //! Contacts of meshes that overlap, after the first pass.
 
 use glamx::DVec3;
-use sbbk_core::contact::ManifoldPoints;
+use sbbk_core::contact::{ManifoldPoints, contact_along};
+use sbbk_core::query::TrianglePair;
 
 use super::TriangleQuery;
 use crate::pair::deep::{self, ContourMemory};
-use crate::pair::islands::OverlapIslands;
+use crate::pair::islands::{Crossing, OverlapIslands, Support};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
@@ -87,13 +88,29 @@ impl TriangleQuery<'_> {
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(support) = islands.open_support(&crossing) else { continue };
-            let contact = self.shapes.with_filter(crossing.pair, |filter| {
-                filter.supporting_contact(&crossing, support, clipped)
-            });
-            contacts.extend(contact.flatten().map(|contact| (crossing.pair, contact)));
+            let contact = self.supporting_contact(&crossing, support, clipped);
+            contacts.extend(contact.map(|contact| (crossing.pair, contact)));
         }
         // Contacts of contours come first.
         contacts.sort_unstable_by_key(|(pair, hit)| (*pair, hit.source != ContactSource::PushOut));
         contacts.dedup_by_key(|(pair, _)| *pair);
+    }
+
+    /// Returns a contact of a crossing pair, along the way out of its island if there is one.
+    fn supporting_contact(
+        &self,
+        crossing: &Crossing,
+        support: Support,
+        clipped: &mut ManifoldPoints,
+    ) -> Option<TriangleSurfaceContact> {
+        let TrianglePair { corners, .. } = self.shapes.local(crossing.pair)?;
+        let Some(direction) = support.direction(crossing, &corners) else {
+            return self.shapes.with_filter(crossing.pair, |filter| {
+                filter.supporting_contact(crossing, support, clipped)
+            })?;
+        };
+        let contact = contact_along(corners.each_ref(), direction, clipped)?;
+        let source = ContactSource::OutwardAxis;
+        (contact.distance <= 0.0).then_some(TriangleSurfaceContact { contact, source })
     }
 }
