@@ -128,3 +128,23 @@ fn boxes_with_a_contact_skin_slide_as_cuboids_do() {
         }
     }
 }
+
+/// Small boxes on a contact skin as large as they are. Would catch points of sides that end beyond the prediction distance. These took the
+/// places of corners that carry, and the boxes rocked for ever.
+#[test]
+fn small_boxes_with_a_contact_skin_come_to_rest() {
+    let ground = mesh::floor(12.0, 20).shape();
+    for (half, skin) in [(0.05, 0.01), (0.05, 0.04), (0.15, 0.02), (0.3, 0.04)] {
+        for k in 0..5 {
+            let k = k as Real;
+            let at = Vec3::new(0.03 + 0.07 * k, half + 2.0 * skin + 0.1, 0.02 + 0.05 * k);
+            let mut world = world(ColliderBuilder::new(ground.clone()).contact_skin(skin));
+            world.integration_parameters.length_unit = 0.1;
+            let cube = mesh::cuboid(Vec3::splat(half), 1).shape();
+            let collider = ColliderBuilder::new(cube).contact_skin(skin).density(1.0);
+            let body = after(400, world, RigidBodyBuilder::dynamic().translation(at), collider);
+            let low = half + 2.0 * skin - body.translation().y;
+            assert!(body.is_sleeping() && low < 0.002, "{half}, {skin}, {k}: {low} low");
+        }
+    }
+}

@@ -474,7 +474,7 @@ fn feature(TriangleContact { features, .. }: &TriangleContact, i: usize) -> Feat
 }
 
 /// Returns true if a unit direction is far from the normals of a triangle.
-fn leans(corners: &[DVec3; 3], direction: DVec3) -> bool {
+pub(super) fn leans(corners: &[DVec3; 3], direction: DVec3) -> bool {
     let normal = area_vector(corners);
     normal.dot(direction).abs() < NEAR_NORMAL * normal.length()
 }

@@ -36,7 +36,7 @@ use super::shapes::{
     TriangleShapes, TriangleSurfaceContact, contact_of, filter_distance,
 };
 use super::sides::{HeldMesh, InsideTest};
-use super::surface::{SurfaceFilter, Verdict};
+use super::surface::{SurfaceFilter, Verdict, leans};
 use super::triangle_points::{constrained_normal, write_triangle_points};
 use crate::SbbkConfig;
 use crate::mesh::{Change, LazySurface, MeshView, PairMesh, use_trees};
@@ -384,6 +384,12 @@ impl PairQuery for TriangleQuery<'_> {
             push_closest(t1, t2, contact, clipped);
         }
         let pose = shapes.pose;
+        let leans = || local.corners.iter().any(|corners| leans(corners, contact.normal));
+        if contact.distance > shapes.filter_distance && leans() {
+            // Other triangles hide the far end of one that stands beside the normal.
+            let within = f64::from(pose.prediction).max(contact.distance);
+            clipped.retain(|point| point.distance <= within);
+        }
         let deepest = -shapes.filter_distance.max(DEEPEST * f64::from(pose.prediction));
         clipped.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
         write_triangle_points(pose, &local, contact, clipped, source.cones(&of_triangles), points);
