@@ -332,6 +332,23 @@ fn turning_half_spaces_meet_the_far_corner() {
     }
 }
 
+/// Would catch half-spaces that count as touching from any height, as they have no far side.
+#[test]
+fn meshes_meet_half_spaces_whatever_their_options() {
+    let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 1));
+    let ground = SharedShape::halfspace(Vec3::Y);
+    for (height, is_met) in [(2.0, true), (0.7, true), (4.0, false)] {
+        for (is_mesh_first, stop) in [(true, true), (true, false), (false, true), (false, false)] {
+            let motions = [pushed(Vec3::Y * height, -2.0 * Vec3::Y), still()];
+            let cast = Cast { mesh: &cube, shape: &ground, motions, is_mesh_first, until: 1.0 };
+            let found = cast.ask(&SbbkDispatcher::default(), stop);
+            let time = found.map(|hit| hit.time_of_impact);
+            assert_eq!(time.is_some(), is_met, "{height}, {is_mesh_first}, {stop}");
+            assert!(time.is_none_or(|time| (2.0 * time - (height - 0.5)).abs() < 1e-4), "{time:?}");
+        }
+    }
+}
+
 /// Would catch a tolerance of zero: a mesh that is a point has no size, and takes all steps there are.
 #[test]
 fn a_point_that_falls_is_met() {

@@ -35,7 +35,7 @@ pub(super) struct MovingConvex<'a, 'q> {
     search: ConvexSearch<'a>,
     cast: &'q NonlinearCast<'q>,
     options: AdvanceOptions,
-    /// Depth that the shape must gain to come out behind a triangle, as in Parry.
+    /// Depth that the shape must gain to come out behind a triangle, as in Parry. For a half-space, the depth that the mesh must gain.
     thickness: f64,
     /// Depth of the contact at the start, if there is one and the cast does not stop there.
     sunk: Option<f64>,
@@ -44,7 +44,13 @@ pub(super) struct MovingConvex<'a, 'q> {
 impl<'a, 'q> MovingConvex<'a, 'q> {
     pub(super) fn new(search: ConvexSearch<'a>, cast: &'q NonlinearCast<'q>) -> Self {
         let options = cast.options(search.mesh_place.swap(search.balls()));
-        let thickness = f64::from(search.shape.ccd_thickness());
+        let [_, ball] = search.balls();
+        // A half-space is endless: the mesh is what may sink in.
+        let thickness = match ball.radius.is_finite() {
+            true => search.shape.ccd_thickness(),
+            false => search.mesh.root().extents().min_element(),
+        };
+        let thickness = f64::from(thickness);
         Self { search, cast, options, thickness, sunk: None }
     }
 
