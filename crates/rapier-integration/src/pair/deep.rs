@@ -8,7 +8,6 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 use parry3d::query::Ray;
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::area_vector;
 
 use super::islands::{Crossing, IslandWay, OverlapIslands};
 use super::pose::PairPose;
@@ -55,9 +54,8 @@ struct Segment {
 impl Segment {
     /// Returns `None` for triangles that do not cross.
     fn of(crossing: &Crossing, local: &TrianglePair) -> Option<Self> {
-        let ([t1, t2], signs) = (&local.corners, crossing.outward_signs()?);
-        let outward = |i: usize| signs[i] * area_vector(&local.corners[i]).normalize_or_zero();
-        let [normal1, normal2] = [0, 1].map(outward);
+        let [t1, t2] = &local.corners;
+        let [normal1, normal2] = crossing.outward_normals(&local.corners)?;
         let along = normal1.cross(normal2);
         let [from1, to1] = cut(t1, normal2, t2[0], along)?;
         let [from2, to2] = cut(t2, normal1, t1[0], along)?;

@@ -35,7 +35,7 @@ pub(super) struct Support {
     /// Depth of the deepest contact that pushes far, or zero. A contour may know a shorter way.
     farthest: f64,
     /// Way out of the overlap, if the contour has one.
-    way: Option<IslandWay>,
+    pub(super) way: Option<IslandWay>,
     /// Sum of the normals of reliable contacts.
     normals: DVec3,
     /// Direction off a sheet, to the side on which the middle of a solid is; zero without a sheet.
@@ -62,7 +62,8 @@ pub(super) struct IslandWay {
 impl IslandWay {
     /// Returns the direction of the contact of two triangles: the way, turned a little to the direction out of both. Contacts of
     /// Rapier are soft. One direction has four of them at most, and several directions carry more.
-    fn towards(&self, out: DVec3) -> DVec3 {
+    pub(super) fn towards(&self, [outward1, outward2]: [DVec3; 2]) -> DVec3 {
+        let out = (outward1 - outward2).normalize_or_zero();
         if self.is_exact { self.normal } else { (self.normal + OUTWARD * out).normalize() }
     }
 }
@@ -75,18 +76,6 @@ impl Support {
     /// Returns true for the normals of contacts that push neither against the reliable ones, nor through a sheet.
     pub(super) fn agrees(self, normal: DVec3) -> bool {
         self.normals.dot(normal) >= 0.0 && self.sheet_side.dot(normal) >= 0.0
-    }
-
-    /// Returns the direction of a contact of two triangles, if the island has a way out.
-    pub(super) fn direction(
-        &self,
-        crossing: &Crossing,
-        corners: &[[DVec3; 3]; 2],
-    ) -> Option<DVec3> {
-        let [sign1, sign2] = crossing.outward_signs().unwrap_or_default();
-        let [normal1, normal2] = corners.each_ref().map(|of| area_vector(of).normalize_or_zero());
-        let out = (sign1 * normal1 - sign2 * normal2).normalize_or_zero();
-        Some(self.way?.towards(out))
     }
 }
 
@@ -149,6 +138,12 @@ impl Crossing {
     fn far_depth(&self) -> f64 {
         let is_far = self.sheet.is_none() && self.depth > ASKS_CONTOUR * self.greatest;
         if is_far { self.depth } else { 0.0 }
+    }
+
+    /// Returns the unit normals of the triangles that lead out of the shapes, if these are known.
+    pub(super) fn outward_normals(&self, corners: &[[DVec3; 3]; 2]) -> Option<[DVec3; 2]> {
+        let signs = self.outward_signs()?;
+        Some([0, 1].map(|i| signs[i] * area_vector(&corners[i]).normalize_or_zero()))
     }
 
     /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. A sheet counts as

@@ -109,7 +109,7 @@ impl<'t> Outward<'t> {
         let Some((gap, normal)) = axis else {
             return if are_all { Extremal::None } else { Extremal::Unknown };
         };
-        let contact = self.contact_along(normal, out);
+        let contact = along(self.triangles.each_ref(), normal, out);
         let is_shown = |contact: &TriangleContact| {
             contact.distance <= SHOWN * gap && contact.distance >= -most
         };
@@ -139,7 +139,7 @@ impl<'t> Outward<'t> {
         let extremal =
             if has_extremal { self.extremal_axis(f64::INFINITY, is_extremal).0 } else { None };
         let (_, normal) = extremal.or_else(|| self.least_axis(widest))?;
-        may_count(normal).then(|| self.contact_along(normal, out))?
+        may_count(normal).then(|| along(self.triangles.each_ref(), normal, out))?
     }
 
     /// Returns true if no axis is in both cones.
@@ -265,10 +265,6 @@ impl<'t> Outward<'t> {
                 return;
             }
         }
-    }
-
-    fn contact_along(&self, axis: DVec3, out: &mut ManifoldPoints) -> Option<TriangleContact> {
-        along(self.triangles.each_ref(), axis, out)
     }
 }
 

@@ -103,12 +103,13 @@ impl TriangleQuery<'_> {
         support: Support,
         clipped: &mut ManifoldPoints,
     ) -> Option<TriangleSurfaceContact> {
-        let TrianglePair { corners, .. } = self.shapes.local(crossing.pair)?;
-        let Some(direction) = support.direction(crossing, &corners) else {
+        let Some(way) = support.way else {
             return self.shapes.with_filter(crossing.pair, |filter| {
                 filter.supporting_contact(crossing, support, clipped)
             })?;
         };
+        let TrianglePair { corners, .. } = self.shapes.local(crossing.pair)?;
+        let direction = way.towards(crossing.outward_normals(&corners).unwrap_or_default());
         let contact = contact_along(corners.each_ref(), direction, clipped)?;
         let source = ContactSource::OutwardAxis;
         (contact.distance <= 0.0).then_some(TriangleSurfaceContact { contact, source })
