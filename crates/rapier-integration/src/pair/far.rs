@@ -11,7 +11,7 @@ use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::Real;
 use parry3d::query::Ray;
-use sbbk_core::contact::{Feature, FeaturePair, ManifoldPoints, TriangleContact, contact};
+use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
 
 use super::borders::is_past_border;
 use super::islands::OverlapIslands;
@@ -39,12 +39,11 @@ const ONE_DIRECTION: f64 = 0.99;
 
 impl TriangleShapes<'_> {
     /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way`: contacts that lead
-    /// past borders do not count. `clipped` is memory.
+    /// past borders do not count.
     pub(super) fn add_far(
         &self,
         is_apart: bool,
         lead_one_way: bool,
-        clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         let (old_count, reach) = (contacts.len(), f64::from(self.reach()));
@@ -54,7 +53,7 @@ impl TriangleShapes<'_> {
             if contact.distance <= reach {
                 return;
             }
-            let verdict = self.with_filter(pair, |filter| filter.apply(contact, may_pass, clipped));
+            let verdict = self.with_filter(pair, |filter| filter.apply(contact, may_pass));
             if let Some(Verdict::Contact(hit, upright)) = verdict {
                 let cosine = upright.map_or(1.0, |normal| normal.dot(hit.contact.normal));
                 let is_past = lead_one_way && is_past_border(hit.contact.distance, cosine);

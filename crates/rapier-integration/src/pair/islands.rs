@@ -3,6 +3,7 @@ use rustc_hash::FxHashMap;
 use sbbk_core::collections::UnionFind;
 use sbbk_core::surface::area_vector;
 
+use super::shapes::TriangleHit;
 use super::ways::{Directions, SAME_SIDE, Ways};
 
 /// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
@@ -21,7 +22,11 @@ pub(crate) struct OverlapIslands {
     with_triangle: FxHashMap<Node, usize>,
     /// Ways that part all pairs of an island at a small depth, and the depths.
     one_ways: Directions,
-    /// Support of each island, at the index of its first crossing. Others have no pairs.
+    /// Way out of each island whose contour has one, by island.
+    ways_out: Vec<Option<IslandWay>>,
+    /// Contacts along these ways in the middles of contours and at points of them, with their islands.
+    of_contours: Vec<(usize, TriangleHit)>,
+    /// Support of each island, by island. Others have no pairs.
     support: Vec<Support>,
 }
 
@@ -32,10 +37,6 @@ pub(super) struct Support {
     pairs: u32,
     /// Reliable contacts among them.
     reliable: u32,
-    /// Depth of the deepest contact that pushes far, or zero. A contour may know a shorter way.
-    farthest: f64,
-    /// Way out of the overlap, if the contour has one.
-    pub(super) way: Option<IslandWay>,
     /// Sum of the normals of reliable contacts.
     normals: DVec3,
     /// Direction off a sheet, to the side on which the middle of a solid is; zero without a sheet.
@@ -53,10 +54,10 @@ pub(super) struct IslandWay {
     pub(super) normal: DVec3,
     /// Depth of the overlap along the way.
     pub(super) length: f64,
-    /// True if all of the contour is in a plane across the way.
+    /// True if the contour is in a plane across the way, or if two faces are across from each other.
     pub(super) is_exact: bool,
-    /// True for each shape that may be left through both sides of its triangles.
-    pub(super) is_two_way: [bool; 2],
+    /// True if the middle of the contour is in the overlap. If not, contacts of the pairs come first.
+    pub(super) has_middle: bool,
 }
 
 impl IslandWay {
@@ -69,7 +70,7 @@ impl IslandWay {
 }
 
 impl Support {
-    fn is_enough(self) -> bool {
+    pub(super) fn is_enough(self) -> bool {
         self.pairs <= SUPPORTED * self.reliable
     }
 
@@ -88,15 +89,17 @@ pub(super) struct Crossing {
     pub(super) pair: [u32; 2],
     /// False if they have passed each other.
     pub(super) is_crossing: bool,
+    /// True if the triangles are so near that rounding decides whether they cross.
+    pub(super) is_touching: bool,
     /// Greatest depth of a contact that needs no proof that a point is far inside.
     pub(super) greatest: f64,
-    /// True if the first pass found a contact.
+    /// True if the contact of the pair leads out.
     pub(super) is_reliable: bool,
     /// False if no axis of the pair is extremal.
     pub(super) has_extremal: bool,
-    /// Normal of the contact of the first pass, from mesh 1 to mesh 2.
+    /// Normal of this contact, from mesh 1 to mesh 2.
     pub(super) normal: DVec3,
-    /// Depth of the contact of the first pass.
+    /// Depth of this contact.
     pub(super) depth: f64,
     /// Signs with which the normals of the triangles lead out of the shapes; `None` for a sheet.
     pub(super) outward: [Option<f64>; 2],
@@ -104,7 +107,7 @@ pub(super) struct Crossing {
     pub(super) is_two_way: [bool; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
-    /// True if the contact of the first pass pushes the wrong way.
+    /// True if this contact pushes the wrong way.
     pub(super) is_rejected: bool,
     /// Index of the first crossing of the island.
     pub(super) island: usize,
@@ -134,12 +137,6 @@ impl Crossing {
         self.is_reliable && !self.is_rejected
     }
 
-    /// Returns the depth of a contact that pushes far out of a solid, or zero.
-    fn far_depth(&self) -> f64 {
-        let is_far = self.sheet.is_none() && self.depth > ASKS_CONTOUR * self.greatest;
-        if is_far { self.depth } else { 0.0 }
-    }
-
     /// Returns the unit normals of the triangles that lead out of the shapes, if these are known.
     pub(super) fn outward_normals(&self, corners: &[[DVec3; 3]; 2]) -> Option<[DVec3; 2]> {
         let signs = self.outward_signs()?;
@@ -161,10 +158,6 @@ impl Crossing {
 /// Share of the direction out of two triangles in the direction of their contact, if the contour of the overlap is not flat. Higher:
 /// bodies that are deep in each other are pushed aside. Lower: heavy loads press bodies deeper.
 const OUTWARD: f64 = 0.3;
-
-/// Share of the greatest depth of a contact from which a contour may know a shorter way. Higher: edges that cross push each other
-/// aside. Lower: more time for bodies in each other.
-const ASKS_CONTOUR: f64 = 0.5;
 
 impl OverlapIslands {
     /// Begins the first pass of a query.
@@ -191,33 +184,30 @@ impl OverlapIslands {
         Some(self.crossings[index]).filter(|crossing| !crossing.is_fine())
     }
 
-    /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
-    /// the wrong way. `small`: depth of bodies at rest.
+    /// Returns true if an island has too few reliable contacts, or if some push the wrong way. `small`: depth of bodies at rest.
     /// `is_parted` tells if a way of a length parts two triangles, and both surfaces end there.
-    pub(super) fn finish_first_pass(
+    pub(super) fn needs_second_pass(
         &mut self,
         small: f64,
         is_parted: impl Fn([u32; 2], DVec3, f64) -> bool,
     ) -> bool {
-        let is_good = |crossing: &Crossing| crossing.is_fine() && crossing.far_depth() == 0.0;
         self.one_ways.clear();
-        if self.crossings.iter().all(is_good) && self.are_within(SAME_SIDE) {
+        if self.crossings.iter().all(Crossing::is_fine) && self.are_within(SAME_SIDE) {
             self.note_one_way(small);
             return false;
         }
-        self.join();
         self.keep_one_way(small, is_parted);
-        if self.crossings.iter().all(is_good) {
+        if self.crossings.iter().all(Crossing::is_fine) {
             return false;
         }
         self.sum_support();
-        let needs_more = |support: &Support| !support.is_enough() || support.farthest > 0.0;
+        let needs_more = |support: &Support| !support.is_enough();
         let is_rejected = |crossing: &Crossing| crossing.is_rejected;
         self.crossings.iter().any(is_rejected) || self.support.iter().any(needs_more)
     }
 
-    /// Joins crossings with common triangles to islands.
-    fn join(&mut self) {
+    /// Joins crossings with common triangles to islands. An island has the index of its first crossing.
+    pub(super) fn join(&mut self) {
         let Self { crossings, touching, islands, with_triangle, .. } = self;
         islands.reset(crossings.len() + touching.len());
         with_triangle.clear();
@@ -231,6 +221,9 @@ impl OverlapIslands {
         for (index, crossing) in crossings.iter_mut().enumerate() {
             crossing.island = islands.first(index);
         }
+        self.ways_out.clear();
+        self.ways_out.resize(self.crossings.len(), None);
+        self.of_contours.clear();
     }
 
     /// Returns the crossing of a pair.
@@ -249,45 +242,52 @@ impl OverlapIslands {
         Some(self.support[crossing.island]).filter(|support| !support.is_enough())
     }
 
-    /// Replaces `list` by the crossings in islands whose contacts are too few or push far, one island after another. Crossings
-    /// with an unknown outer side are left out.
-    pub(super) fn list_unsupported(&self, list: &mut Vec<Crossing>) {
-        let is_listed = |crossing: &&Crossing| {
-            let has_sides = crossing.is_crossing && crossing.outward_signs().is_some();
-            has_sides && self.longest_way(crossing.island) > 0.0
-        };
+    /// Replaces `list` by the crossings that may be part of a contour, one island after another. Crossings with an unknown outer
+    /// side are left out.
+    pub(super) fn list_contours(&self, list: &mut Vec<Crossing>) {
+        let has_sides = |one: &&Crossing| one.is_crossing && one.outward_signs().is_some();
         list.clear();
-        list.extend(self.crossings.iter().filter(is_listed));
+        list.extend(self.crossings.iter().filter(has_sides));
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
     }
 
-    /// Returns the length up to which the way out of a contour is of use to an island. Infinite if contacts are too few.
-    pub(super) fn longest_way(&self, island: usize) -> f64 {
-        let support = self.support[island];
-        if support.is_enough() { support.farthest } else { f64::INFINITY }
+    /// Returns the way out of an island, if its contour has one.
+    pub(super) fn way_out(&self, island: usize) -> Option<IslandWay> {
+        self.ways_out[island]
     }
 
-    /// Returns the way out of the overlap that a crossing pair belongs to, if it is known.
-    pub(super) fn way(&self, pair: [u32; 2]) -> Option<IslandWay> {
-        self.support[self.crossing(pair)?.island].way
+    /// Sets the way out of an island, and the contacts along the way.
+    pub(super) fn set_way_out(
+        &mut self,
+        island: usize,
+        way: IslandWay,
+        contacts: impl Iterator<Item = TriangleHit>,
+    ) {
+        self.ways_out[island] = Some(way);
+        self.of_contours.extend(contacts.map(|contact| (island, contact)));
     }
 
-    /// Sets the way out of the overlap of an island.
-    pub(super) fn set_way(&mut self, island: usize, way: IslandWay) {
-        self.support[island].way = Some(way);
+    /// Returns the contacts of the contours of some islands.
+    pub(super) fn of_contours(
+        &self,
+        counts: impl Fn(&IslandWay, Support) -> bool,
+    ) -> impl Iterator<Item = TriangleHit> {
+        let counts = move |island: usize| {
+            let support = self.support.get(island).copied().unwrap_or_default();
+            self.ways_out[island].is_some_and(|way| counts(&way, support))
+        };
+        self.of_contours.iter().filter(move |(island, _)| counts(*island)).map(|(_, hit)| *hit)
     }
 
     /// Sums the support of each island.
     fn sum_support(&mut self) {
         self.support.clear();
-        self.support.resize(self.crossings.len(), Support::default());
+        self.support.resize(self.ways_out.len(), Support::default());
         for crossing in &self.crossings {
             let is_fine = crossing.is_fine();
             let support = &mut self.support[crossing.island];
             support.pairs += 1;
             support.reliable += u32::from(is_fine);
-            support.farthest =
-                support.farthest.max(if is_fine { crossing.far_depth() } else { 0.0 });
             support.normals += if is_fine { crossing.normal } else { DVec3::ZERO };
             support.sheet_side +=
                 crossing.sheet.map_or(DVec3::ZERO, |sheet| sheet.height * sheet.away);

@@ -3,8 +3,8 @@
 //! [`update`] is the pipeline. The table of steps in `ARCHITECTURE.md` says which file does what.
 
 mod borders;
+mod contours;
 mod convex;
-mod deep;
 mod descents;
 mod far;
 mod field;

@@ -33,7 +33,7 @@ const TRUSTED_DEPTH: f64 = 5.0;
 
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are turned
 /// in vain; lower: slanted contacts keep their normals.
-const ALONG_NORMAL: f64 = 0.999_999;
+pub(super) const ALONG_NORMAL: f64 = 0.999_999;
 
 /// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through sheets
 /// that face away from them. Lower: rods and plates sink through sheets.
@@ -55,8 +55,8 @@ pub(super) enum Verdict {
     Passing,
     /// A contact and, at a [border](super::borders), the normal of the face.
     Contact(TriangleSurfaceContact, Option<DVec3>),
-    /// The surfaces cross. A contact may still be rejected by the second pass.
-    Crossing(Crossing, Option<TriangleSurfaceContact>),
+    /// The surfaces cross.
+    Crossing(Crossing),
 }
 
 impl TriangleShapes<'_> {
@@ -108,14 +108,9 @@ impl<'a> SurfaceFilter<'a> {
         self.surfaces.iter().any(|surface| surface.side == Side::Inner)
     }
 
-    /// First pass. `may_pass`: edges and vertices may pass each other. `clipped` is memory.
+    /// First pass. `may_pass`: edges and vertices may pass each other.
     #[inline(always)]
-    pub(super) fn apply(
-        &self,
-        contact: TriangleContact,
-        may_pass: bool,
-        clipped: &mut ManifoldPoints,
-    ) -> Verdict {
+    pub(super) fn apply(&self, contact: TriangleContact, may_pass: bool) -> Verdict {
         let of_triangles = TriangleSurfaceContact::of_triangles(contact);
         if self.has_wall_within() {
             return Verdict::None;
@@ -138,7 +133,7 @@ impl<'a> SurfaceFilter<'a> {
                 return Verdict::None;
             }
         }
-        self.crossing(&contact, clipped)
+        Verdict::Crossing(self.crossing(&contact))
     }
 
     /// Returns true if triangles that are apart have passed each other in solids. `is_first_minimum`: the contact is a local
@@ -232,42 +227,47 @@ impl<'a> SurfaceFilter<'a> {
         (normal, normal.dot(middle - corners[0]))
     }
 
-    /// Returns the contact of triangles that cross or have passed each other.
-    fn crossing(&self, contact: &TriangleContact, clipped: &mut ManifoldPoints) -> Verdict {
-        let is_solid = self.are_solid();
-        let is_crossing = contact.features.is_crossing();
+    /// Returns the crossing of triangles that cross or have passed each other, without a contact.
+    fn crossing(&self, contact: &TriangleContact) -> Crossing {
         let shallow = self.shapes.filter_unit();
-        let greatest = TRUSTED_DEPTH * contact.distance.abs().max(shallow);
-        let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let extremal = self.outward().extremal(ends, greatest, clipped);
-        let good = extremal.contact();
-        if good.is_none() && !is_crossing && self.is_touching(contact, SIDE_ROUNDING) {
-            return Verdict::None;
-        }
-        let (normal, depth) =
-            good.map_or_else(Default::default, |good| (good.normal, -good.distance));
-        let sheet = self.sheet_side(is_solid);
-        // The far side of a thin wall, behind which the sheet is.
-        if !is_crossing && sheet.is_some_and(|sheet| sheet.is_pushed_through(normal)) {
-            return Verdict::None;
-        }
         let outward = self.outward_signs();
-        let crossing = Crossing {
+        Crossing {
             pair: self.pair,
-            is_crossing,
-            greatest,
-            is_reliable: good.is_some(),
-            has_extremal: extremal != Extremal::None,
-            normal,
-            depth,
+            is_crossing: contact.features.is_crossing(),
+            is_touching: self.is_touching(contact, SIDE_ROUNDING),
+            greatest: TRUSTED_DEPTH * contact.distance.abs().max(shallow),
+            is_reliable: false,
+            has_extremal: true,
+            normal: DVec3::ZERO,
+            depth: 0.0,
             outward,
             is_two_way: [0, 1].map(|i| outward[i] != Some(self.shapes[i].outward())),
-            sheet,
+            sheet: self.sheet_side(self.are_solid()),
             is_rejected: false,
             island: 0,
-        };
+        }
+    }
+
+    /// Returns the extremal contact of a crossing. Also returns false for triangles that only touch, and for the far side of a
+    /// thin wall, behind which the sheet is.
+    pub(super) fn find_extremal(
+        &self,
+        crossing: &mut Crossing,
+        clipped: &mut ManifoldPoints,
+    ) -> (bool, Option<TriangleSurfaceContact>) {
+        let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
+        let extremal = self.outward().extremal(ends, crossing.greatest, clipped);
+        let good = extremal.contact();
+        crossing.is_reliable = good.is_some();
+        crossing.has_extremal = extremal != Extremal::None;
+        (crossing.normal, crossing.depth) =
+            good.map_or_else(Default::default, |good| (good.normal, -good.distance));
+        let is_lost = !crossing.is_crossing
+            && (good.is_none() && crossing.is_touching
+                || crossing.sheet.is_some_and(|sheet| sheet.is_pushed_through(crossing.normal)));
         let source = ContactSource::OutwardAxis;
-        Verdict::Crossing(crossing, good.map(|contact| TriangleSurfaceContact { contact, source }))
+        let good = good.filter(|_| !is_lost);
+        (!is_lost, good.map(|contact| TriangleSurfaceContact { contact, source }))
     }
 
     /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller sheet,

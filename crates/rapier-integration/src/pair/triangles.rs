@@ -24,7 +24,7 @@ use sbbk_core::traverse::{DescentCounts, SlackLimits};
 use sbbk_core::tree::Tree;
 
 use super::borders::meet_borders;
-use super::deep::ContourMemory;
+use super::contours::ContourMemory;
 use super::descents::{ChunkResult, DescentMemory, in_chunks};
 use super::field::{Field, FieldToken};
 use super::islands::OverlapIslands;
@@ -305,12 +305,15 @@ impl PairQuery for TriangleQuery<'_> {
             return self.hold(candidates, limits, contacts);
         }
         let lead_one_way = meet_borders(upright, contacts);
-        if self.finish_first_pass(islands) {
-            self.second_pass(islands, contours, clipped, contacts);
+        if !islands.crossings.is_empty() {
+            self.add_of_islands(islands, contours, clipped, contacts);
+        }
+        if self.needs_second_pass(islands) {
+            self.second_pass(islands, clipped, contacts);
         }
         self.drop_lifted(islands.one_ways(), contacts);
         if limits.reach < f64::from(self.shapes.pose.prediction) {
-            self.shapes.add_far(!*is_near, lead_one_way, clipped, contacts);
+            self.shapes.add_far(!*is_near, lead_one_way, contacts);
         } else if limits.reach > self.shapes.filter_distance {
             self.shapes.thin_out_far(directions, islands, contacts);
         }
@@ -417,7 +420,7 @@ impl TriangleQuery<'_> {
         let Some(filter) = SurfaceFilter::new(&self.shapes, pair, &local) else {
             return first.contacts.push((pair, TriangleSurfaceContact::of_triangles(contact)));
         };
-        match filter.apply(contact, true, &mut first.clipped) {
+        match filter.apply(contact, true) {
             Verdict::None
                 if filter.is_touching(&contact, NEARLY_TOUCHING) && !filter.has_wall_within() =>
             {
@@ -429,10 +432,7 @@ impl TriangleQuery<'_> {
                 first.contacts.push((pair, contact));
                 first.upright.extend(upright.map(|upright| (pair, upright)));
             }
-            Verdict::Crossing(crossing, contact) => {
-                first.islands.crossings.push(crossing);
-                first.contacts.extend(contact.map(|contact| (pair, contact)));
-            }
+            Verdict::Crossing(crossing) => first.islands.crossings.push(crossing),
         }
     }
 
@@ -457,7 +457,7 @@ impl TriangleQuery<'_> {
 
     /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.
     fn add_passing(&self, first: &mut FirstPass) {
-        let FirstPass { contacts, upright, passing, islands, clipped, .. } = first;
+        let FirstPass { contacts, upright, passing, islands, .. } = first;
         if passing.is_empty() || !islands.crossings.is_empty() {
             return;
         }
@@ -466,8 +466,7 @@ impl TriangleQuery<'_> {
         let nearest = distances.fold(f64::INFINITY, f64::min);
         let is_nearest = |contact: &TriangleContact| contact.distance < NEARER * nearest;
         for &(pair, contact) in passing.iter().filter(|(_, contact)| is_nearest(contact)) {
-            let verdict =
-                self.shapes.with_filter(pair, |filter| filter.apply(contact, false, clipped));
+            let verdict = self.shapes.with_filter(pair, |filter| filter.apply(contact, false));
             if let Some(Verdict::Contact(hit, border)) = verdict {
                 contacts.push((pair, hit));
                 upright.extend(border.map(|border| (pair, border)));

@@ -39,11 +39,9 @@ impl OverlapIslands {
             let is_parted = |way: DVec3, depth: f64| is_parted(pair, way, depth);
             ways.keep_parting(island, normal, small, is_parted);
         }
-        for (index, crossing) in crossings.iter_mut().enumerate() {
+        for crossing in crossings {
             let Some((way, depth)) = ways.least(crossing.island) else { continue };
-            if crossing.island == index {
-                add_direction(one_ways, way, depth);
-            }
+            add_direction(one_ways, way, depth);
             crossing.is_rejected |= way.dot(crossing.normal) < SAME_SIDE;
         }
     }

@@ -5,19 +5,77 @@ use sbbk_core::contact::{ManifoldPoints, contact_along};
 use sbbk_core::query::TrianglePair;
 
 use super::TriangleQuery;
-use crate::pair::deep::{self, ContourMemory};
-use crate::pair::islands::{Crossing, OverlapIslands, Support};
+use crate::pair::contours::{self, ContourMemory};
+use crate::pair::islands::{Crossing, IslandWay, OverlapIslands, Support};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
-use crate::pair::ways::{RESTING_DEPTH, SAME_DIRECTION, greatest_overlap};
+use crate::pair::ways::{ALIKE, RESTING_DEPTH, SAME_DIRECTION, greatest_overlap};
 
 impl TriangleQuery<'_> {
-    /// Ends the first pass. Returns true if a second pass is needed.
-    pub(super) fn finish_first_pass(&self, islands: &mut OverlapIslands) -> bool {
+    /// Adds the contacts of crossing triangles, and drops triangles that do not cross after all.
+    #[inline(never)]
+    pub(super) fn add_of_islands(
+        &self,
+        islands: &mut OverlapIslands,
+        contours: &mut ContourMemory,
+        clipped: &mut ManifoldPoints,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        islands.join();
+        contours::find_ways(&self.shapes, islands, contours);
+        contacts.extend(islands.of_contours(|way, _| way.has_middle));
+        let mut crossings = std::mem::take(&mut islands.crossings);
+        crossings.retain_mut(|crossing| {
+            let way = islands.way_out(crossing.island).filter(|way| way.has_middle);
+            let (counts, contact) = self.of_crossing(crossing, way, clipped);
+            contacts.extend(contact.map(|contact| (crossing.pair, contact)));
+            let is_touching = !counts && crossing.is_touching;
+            islands.touching.extend(is_touching.then_some(crossing.pair));
+            counts
+        });
+        islands.crossings = crossings;
+        keep_deepest(contacts);
+    }
+
+    /// Returns the contact of a crossing pair: along the way out of its island, or else the extremal one. Also returns false if the
+    /// pair does not count as crossing.
+    fn of_crossing(
+        &self,
+        crossing: &mut Crossing,
+        way: Option<IslandWay>,
+        clipped: &mut ManifoldPoints,
+    ) -> (bool, Option<TriangleSurfaceContact>) {
+        let Some(way) = way else {
+            let found = self
+                .shapes
+                .with_filter(crossing.pair, |filter| filter.find_extremal(crossing, clipped));
+            return found.unwrap_or_default();
+        };
+        crossing.is_reliable = true;
+        (crossing.normal, crossing.depth) = (way.normal, way.length);
+        (true, self.contact_along(crossing, way, clipped))
+    }
+
+    /// Returns the contact of a crossing pair along the way out of its island.
+    fn contact_along(
+        &self,
+        crossing: &Crossing,
+        way: IslandWay,
+        clipped: &mut ManifoldPoints,
+    ) -> Option<TriangleSurfaceContact> {
+        let TrianglePair { corners, .. } = self.shapes.local(crossing.pair)?;
+        let direction = way.towards(crossing.outward_normals(&corners).unwrap_or_default());
+        let contact = contact_along(corners.each_ref(), direction, clipped)?;
+        let source = ContactSource::OutwardAxis;
+        (contact.distance <= 0.0).then_some(TriangleSurfaceContact { contact, source })
+    }
+
+    /// Returns true if a second pass is needed.
+    pub(super) fn needs_second_pass(&self, islands: &mut OverlapIslands) -> bool {
         let small = RESTING_DEPTH * self.shapes.filter_distance;
         let is_parted = |pair: [u32; 2], way: DVec3, length: f64| self.is_parted(pair, way, length);
-        islands.finish_first_pass(small, is_parted)
+        islands.needs_second_pass(small, is_parted)
     }
 
     /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
@@ -77,41 +135,37 @@ impl TriangleQuery<'_> {
     #[inline(never)]
     pub(super) fn second_pass(
         &self,
-        islands: &mut OverlapIslands,
-        contours: &mut ContourMemory,
+        islands: &OverlapIslands,
         clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
-        deep::add_contacts(&self.shapes, islands, contours, contacts);
-        contacts.retain(|hit| !deep::pushes_farther(&self.shapes, islands, hit));
+        let is_led = |way: &IslandWay, support: Support| !way.has_middle && !support.is_enough();
+        contacts.extend(islands.of_contours(is_led));
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(support) = islands.open_support(&crossing) else { continue };
-            let contact = self.supporting_contact(&crossing, support, clipped);
+            let contact = match islands.way_out(crossing.island) {
+                Some(way) => self.contact_along(&crossing, way, clipped),
+                None => {
+                    let then =
+                        |it: &SurfaceFilter<'_>| it.supporting_contact(&crossing, support, clipped);
+                    self.shapes.with_filter(crossing.pair, then).flatten()
+                }
+            };
             contacts.extend(contact.map(|contact| (crossing.pair, contact)));
         }
-        // Contacts of contours come first.
-        contacts.sort_unstable_by_key(|(pair, hit)| (*pair, hit.source != ContactSource::PushOut));
-        contacts.dedup_by_key(|(pair, _)| *pair);
+        keep_deepest(contacts);
     }
+}
 
-    /// Returns a contact of a crossing pair, along the way out of its island if there is one.
-    fn supporting_contact(
-        &self,
-        crossing: &Crossing,
-        support: Support,
-        clipped: &mut ManifoldPoints,
-    ) -> Option<TriangleSurfaceContact> {
-        let Some(way) = support.way else {
-            return self.shapes.with_filter(crossing.pair, |filter| {
-                filter.supporting_contact(crossing, support, clipped)
-            })?;
-        };
-        let TrianglePair { corners, .. } = self.shapes.local(crossing.pair)?;
-        let direction = way.towards(crossing.outward_normals(&corners).unwrap_or_default());
-        let contact = contact_along(corners.each_ref(), direction, clipped)?;
-        let source = ContactSource::OutwardAxis;
-        (contact.distance <= 0.0).then_some(TriangleSurfaceContact { contact, source })
-    }
+/// Sorts contacts by pair, and keeps the deepest of each pair. Points of a contour count if they are much deeper.
+fn keep_deepest(contacts: &mut ContactList<TriangleSurfaceContact>) {
+    let height = |(_, TriangleSurfaceContact { contact, source }): &TriangleHit| {
+        contact.distance / if *source == ContactSource::PushOut { ALIKE } else { 1.0 }
+    };
+    let order =
+        |a: &TriangleHit, b: &TriangleHit| a.0.cmp(&b.0).then(height(a).total_cmp(&height(b)));
+    contacts.sort_unstable_by(order);
+    contacts.dedup_by_key(|(pair, _)| *pair);
 }

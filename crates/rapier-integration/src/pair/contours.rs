@@ -1,8 +1,8 @@
-//! Contacts of shapes that are deep in each other. A sheet counts as the surface of a solid here.
+//! Ways out of overlaps. A sheet counts as the surface of a solid here.
 //!
-//! Faces that have passed each other by more than a row of triangles no longer cross. The surfaces cross along a
-//! contour, and contacts lead the shortest way out of the overlap behind it. An overlap shrinks fastest along the area
-//! vector of its contour. Contacts are at points of the contour and in its middle.
+//! Two solids that overlap cross along a closed contour, and leave each other the shortest way. An overlap shrinks fastest along
+//! the area vector of its contour. Contacts are at points of the contour and in its middle, as the deepest triangles
+//! may have passed each other and cross no more.
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;
@@ -11,13 +11,9 @@ use sbbk_core::query::TrianglePair;
 
 use super::islands::{Crossing, IslandWay, OverlapIslands};
 use super::pose::PairPose;
-use super::query::ContactList;
-use super::shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
-use super::ways::{ALIKE, SAME_SIDE};
-
-/// Least cosine between the area vector of a contour and a shorter way out. Higher: boxes leave boxes at a slant. Lower:
-/// contacts of several contours push against each other.
-const NEAR_AREA_VECTOR: f64 = 0.7;
+use super::shapes::{TriangleShapes, TriangleSurfaceContact};
+use super::surface::ALONG_NORMAL;
+use super::ways::SAME_SIDE;
 
 /// Least area vector of a contour, as a share of the area that its segments sweep around the middle. Higher:
 /// bodies that hook into each other keep the contacts of their triangles. Lower: contours push nowhere.
@@ -43,8 +39,6 @@ const CONTOUR_POINTS: usize = 6;
 #[derive(Copy, Clone)]
 struct Segment {
     pair: [u32; 2],
-    /// True if the triangles have a contact.
-    has_contact: bool,
     /// Ends in frame 1, in the direction in which the contour runs around the overlap.
     ends: [DVec3; 2],
     /// Sum of both outward unit normals.
@@ -63,7 +57,6 @@ impl Segment {
         let to = if to1.dot(along) <= to2.dot(along) { to1 } else { to2 };
         (from.dot(along) < to.dot(along)).then(|| Self {
             pair: crossing.pair,
-            has_contact: crossing.is_fine(),
             ends: [from, to].map(|end| local.origin.as_dvec3() + end),
             outward: normal1 + normal2,
         })
@@ -141,11 +134,10 @@ impl<'s> Contour<'s> {
     }
 
     /// Returns points of the overlap, with segments that stand for them: the middle, and points far from each other at
-    /// the contour. Only ties depend on the order of the segments. Pairs with a contact stand for none.
+    /// the contour. Only ties depend on the order of the segments.
     fn points(&self) -> Points<'s> {
-        let free = || self.segments.iter().filter(|one| !one.has_contact);
         let from_middle = |one: &Segment| one.middle().distance_squared(self.middle);
-        let nearest = free().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
+        let nearest = self.segments.iter().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
         let mut chosen = Points::new();
         chosen.extend(nearest.map(|nearest| (nearest, self.middle)));
         while !chosen.is_full() {
@@ -154,7 +146,7 @@ impl<'s> Contour<'s> {
                 to_chosen.fold(f64::INFINITY, f64::min)
             };
             let is_left = |one: &&Segment| chosen.iter().all(|(known, _)| known.pair != one.pair);
-            let left = free().filter(is_left);
+            let left = self.segments.iter().filter(is_left);
             let farthest = left.max_by(|a, b| distance(a).total_cmp(&distance(b)));
             let Some(one) = farthest else { break };
             chosen.push((one, one.middle() - self.inset * one.outward));
@@ -180,83 +172,59 @@ struct Way {
     exits: ArrayVec<Option<[f64; 2]>, CONTOUR_POINTS>,
 }
 
-/// An island of two shapes that are deep in each other.
-struct DeepIsland<'a> {
+/// An overlap of two shapes.
+struct Overlap<'a> {
     shapes: &'a TriangleShapes<'a>,
     /// True for each shape that may be left through both sides of its triangles.
     is_two_way: [bool; 2],
 }
 
-/// Adds contacts along the ways out of contours to islands that have too few, or whose contacts push farther.
-pub(super) fn add_contacts(
+/// Finds the ways out of islands that have a closed contour, and the contacts along them.
+pub(super) fn find_ways(
     shapes: &TriangleShapes<'_>,
     islands: &mut OverlapIslands,
     ContourMemory { crossings, segments }: &mut ContourMemory,
-    contacts: &mut ContactList<TriangleSurfaceContact>,
 ) {
-    islands.list_unsupported(crossings);
+    islands.list_contours(crossings);
     for island in crossings.chunk_by(|a, b| a.island == b.island) {
+        let segment = |crossing: &Crossing| Segment::of(crossing, &shapes.local(crossing.pair)?);
         segments.clear();
-        segments.extend(
-            island
-                .iter()
-                .filter_map(|crossing| Segment::of(crossing, &shapes.local(crossing.pair)?)),
-        );
+        segments.extend(island.iter().filter_map(segment));
         let Some(contour) = Contour::of(segments) else { continue };
         let points = contour.points();
         let is_two_way = [0, 1].map(|i| island.iter().any(|crossing| crossing.is_two_way[i]));
-        let deep = DeepIsland { shapes, is_two_way };
-        let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
+        let overlap = Overlap { shapes, is_two_way };
+        let found = overlap.way_across(&contour, &points);
+        let Some((way, is_exact)) = found.filter(|(way, _)| way.length < contour.most) else {
             continue;
         };
-        if length >= contour.most.min(islands.longest_way(island[0].island)) {
-            continue;
-        }
-        contacts.extend(points.iter().zip(exits).filter_map(|((segment, point), exits)| {
-            Some((segment.pair, deep.contact_across(segment.pair, *point, normal, exits?)?))
-        }));
-        let way = IslandWay { normal, length, is_exact: contour.is_flat, is_two_way };
-        islands.set_way(island[0].island, way);
+        let Way { normal, length, exits } = way;
+        let way = IslandWay { normal, length, is_exact, has_middle: exits[0].is_some() };
+        let contacts = points.iter().zip(exits).filter_map(|((segment, point), exits)| {
+            Some((segment.pair, overlap.contact_across(segment.pair, *point, normal, exits?)?))
+        });
+        islands.set_way_out(island[0].island, way, contacts);
     }
 }
 
-/// Returns true if a contact pushes aside, and by more than the way out of its island, which parts its triangles as well. Triangles
-/// beside an edge that crosses an edge know no shorter way.
-pub(super) fn pushes_farther(
-    shapes: &TriangleShapes<'_>,
-    islands: &OverlapIslands,
-    (pair, TriangleSurfaceContact { contact, source }): &TriangleHit,
-) -> bool {
-    let Some(way) = islands.way(*pair) else { return false };
-    if *source == ContactSource::PushOut
-        || -contact.distance <= way.length
-        || way.normal.dot(contact.normal) >= SAME_SIDE
-    {
-        return false;
-    }
-    let Some([origin, ..]) = shapes[0].corners(pair[0]) else { return false };
-    let middle = origin.as_dvec3() + 0.5 * (contact.point1 + contact.point2);
-    let exits = DeepIsland { shapes, is_two_way: way.is_two_way }.exits(middle, way.normal);
-    // Points of a contact along a wrong way may be beyond the shapes.
-    exits.is_none_or(|[(one, _), (two, _)]| one + two <= ALIKE * way.length)
-}
-
-impl DeepIsland<'_> {
-    /// Returns the shortest way by which shape 2 leaves an overlap. For a flat contour that is the area vector. For others,
-    /// tries the area vector and, from the middle, the normals where that leads out, and the nearest points of both
-    /// surfaces.
-    fn way_across(&self, contour: &Contour, points: &Points) -> Option<Way> {
+impl Overlap<'_> {
+    /// Returns the shortest way by which shape 2 leaves an overlap, and whether the way is exact. Exact ways are the normal of two
+    /// faces across from each other, and the area vector of a flat contour. Else tries the area vector and, from the
+    /// middle, the normals where that leads out, and the nearest points of both surfaces.
+    fn way_across(&self, contour: &Contour, points: &Points) -> Option<(Way, bool)> {
         let Contour { middle, normal, is_flat, .. } = *contour;
-        if is_flat {
-            return self.way_along(normal, points, f64::INFINITY);
-        }
+        let is_near = |way: &DVec3| way.dot(normal) > SAME_SIDE;
         let normals = self.exits(middle, normal).map(|[(_, one), (_, two)]| [one, -two]);
-        let ways = normals.into_iter().flatten().chain(self.nearest_ways(middle));
-        let ways = ways.filter(|way| way.dot(normal) > NEAR_AREA_VECTOR).chain([normal]);
-        ways.fold(None, |shortest: Option<Way>, way| {
+        let face = normals.filter(|[one, two]| one.dot(*two) > ALONG_NORMAL).map(|[one, _]| one);
+        if let Some(way) = face.filter(is_near).or(is_flat.then_some(normal)) {
+            return Some((self.way_along(way, points, f64::INFINITY)?, true));
+        }
+        let ways = normals.into_iter().flatten().chain(self.nearest_ways(middle)).filter(is_near);
+        let shortest = ways.chain([normal]).fold(None, |shortest: Option<Way>, way| {
             let limit = shortest.as_ref().map_or(f64::INFINITY, |known| known.length);
             self.way_along(way, points, limit).or(shortest)
-        })
+        });
+        Some((shortest?, false))
     }
 
     /// Returns the way along a direction. `None` if the direction leads out from no point, or if the way is not shorter than
