@@ -209,8 +209,8 @@ pub(super) fn find_ways(
 
 impl Overlap<'_> {
     /// Returns the shortest way by which shape 2 leaves an overlap, and whether the way is exact. Exact ways are the normal of two
-    /// faces across from each other, and the area vector of a flat contour. Else tries the area vector and, from the
-    /// middle, the normals where that leads out, and the nearest points of both surfaces.
+    /// faces across from each other, and the area vector of a flat contour. Other ways are the area vector, the normals
+    /// where it leads out from the middle, and the directions from the middle to the nearest points of both surfaces.
     fn way_across(&self, contour: &Contour, points: &Points) -> Option<(Way, bool)> {
         let Contour { middle, normal, is_flat, .. } = *contour;
         let is_near = |way: &DVec3| way.dot(normal) > SAME_SIDE;
