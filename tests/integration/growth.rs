@@ -161,14 +161,22 @@ fn time_grows_with_the_triangles() {
                 println!("{name:34} {count:9} {:>22} {:>22}", shown[0], shown[1]);
             }
             let [few, _, many] = times.map(|(.., ours)| ours);
-            for (few, many) in few.into_iter().zip(many) {
-                if is_slow(few, many) {
-                    slow.push(format!("{name}, flipped {is_flipped}: {few:.4} s, {many:.4} s"));
-                }
+            if (0..2).any(|i| is_slow(few[i], many[i])) {
+                slow.push((name, *make, is_flipped));
             }
         }
     }
-    assert!(slow.is_empty(), "{slow:#?}");
+    // Other load on the machine slows single measurements.
+    slow.retain(|(_, make, is_flipped)| {
+        let ours = |count| seconds(&SbbkDispatcher::default(), &make(count), *is_flipped, 1e-4);
+        let is_slow_again = || {
+            let [few, many] = [ours(COUNTS[0]), ours(COUNTS[2])];
+            (0..2).any(|i| is_slow(few[i], many[i]))
+        };
+        (0..3).all(|_| is_slow_again())
+    });
+    let slow: Vec<_> = slow.iter().map(|(name, ..)| name).collect();
+    assert!(slow.is_empty(), "{slow:?}");
 }
 
 /// Would catch push-outs that look at all contacts for each part of a compound.

@@ -192,8 +192,7 @@ pub(super) fn find_ways(
         segments.extend(island.iter().filter_map(segment));
         let Some(contour) = Contour::of(segments) else { continue };
         let points = contour.points();
-        let is_two_way = [0, 1].map(|i| island.iter().any(|crossing| crossing.is_two_way[i]));
-        let overlap = Overlap { shapes, is_two_way };
+        let overlap = Overlap::of(shapes, island);
         let found = overlap.way_across(&contour, &points);
         let Some((way, is_exact)) = found.filter(|(way, _)| way.length < contour.most) else {
             continue;
@@ -207,7 +206,15 @@ pub(super) fn find_ways(
     }
 }
 
-impl Overlap<'_> {
+impl<'a> Overlap<'a> {
+    /// A sheet may be left through both sides, and so may a shape of which triangles are wound unlike the others.
+    fn of(shapes: &'a TriangleShapes<'a>, island: &[Crossing]) -> Self {
+        let is_uniform =
+            |i: usize, crossing: &Crossing| crossing.outward[i] == Some(shapes[i].outward());
+        let is_two_way = [0, 1].map(|i| !island.iter().all(|crossing| is_uniform(i, crossing)));
+        Self { shapes, is_two_way }
+    }
+
     /// Returns the shortest way by which shape 2 leaves an overlap, and whether the way is exact. Exact ways are the normal of two
     /// faces across from each other, and the area vector of a flat contour. Other ways are the area vector, the normals
     /// where it leads out from the middle, and the directions from the middle to the nearest points of both surfaces.

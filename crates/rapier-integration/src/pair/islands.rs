@@ -95,16 +95,12 @@ pub(super) struct Crossing {
     pub(super) greatest: f64,
     /// True if the contact of the pair leads out.
     pub(super) is_reliable: bool,
-    /// False if no axis of the pair is extremal.
-    pub(super) has_extremal: bool,
     /// Normal of this contact, from mesh 1 to mesh 2.
     pub(super) normal: DVec3,
     /// Depth of this contact.
     pub(super) depth: f64,
     /// Signs with which the normals of the triangles lead out of the shapes; `None` for a sheet.
     pub(super) outward: [Option<f64>; 2],
-    /// True for each triangle of a sheet, and for one that is wound unlike most of the shape.
-    pub(super) is_two_way: [bool; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
     /// True if this contact pushes the wrong way.

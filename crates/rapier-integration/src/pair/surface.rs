@@ -14,7 +14,7 @@
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
-use sbbk_core::contact::{Extremal, Feature, ManifoldPoints, Outward, TriangleContact};
+use sbbk_core::contact::{Feature, ManifoldPoints, Outward, TriangleContact};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side, area_vector};
 
@@ -230,18 +230,15 @@ impl<'a> SurfaceFilter<'a> {
     /// Returns the crossing of triangles that cross or have passed each other, without a contact.
     fn crossing(&self, contact: &TriangleContact) -> Crossing {
         let shallow = self.shapes.filter_unit();
-        let outward = self.outward_signs();
         Crossing {
             pair: self.pair,
             is_crossing: contact.features.is_crossing(),
             is_touching: self.is_touching(contact, SIDE_ROUNDING),
             greatest: TRUSTED_DEPTH * contact.distance.abs().max(shallow),
             is_reliable: false,
-            has_extremal: true,
             normal: DVec3::ZERO,
             depth: 0.0,
-            outward,
-            is_two_way: [0, 1].map(|i| outward[i] != Some(self.shapes[i].outward())),
+            outward: self.outward_signs(),
             sheet: self.sheet_side(self.are_solid()),
             is_rejected: false,
             island: 0,
@@ -256,10 +253,8 @@ impl<'a> SurfaceFilter<'a> {
         clipped: &mut ManifoldPoints,
     ) -> (bool, Option<TriangleSurfaceContact>) {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let extremal = self.outward().extremal(ends, crossing.greatest, clipped);
-        let good = extremal.contact();
+        let good = self.outward().extremal(ends, crossing.greatest, clipped);
         crossing.is_reliable = good.is_some();
-        crossing.has_extremal = extremal != Extremal::None;
         (crossing.normal, crossing.depth) =
             good.map_or_else(Default::default, |good| (good.normal, -good.distance));
         let is_lost = !crossing.is_crossing
@@ -323,9 +318,8 @@ impl<'a> SurfaceFilter<'a> {
         clipped: &mut ManifoldPoints,
     ) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let has_extremal = crossing.has_extremal;
         let agrees = |normal: DVec3| support.agrees(normal);
-        let contact = self.outward().least(has_extremal, ends, agrees, clipped)?;
+        let contact = self.outward().least(ends, agrees, clipped)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {

@@ -56,7 +56,7 @@ mod triangle;
 pub use clip::{ManifoldPoint, ManifoldPoints, clip, push_closest};
 pub use feature::{Feature, FeaturePair};
 pub use generate::{contact, contact_from};
-pub use penetration::{Extremal, Outward, contact_along};
+pub use penetration::{Outward, contact_along};
 
 use closest::Closest;
 use glamx::DVec3;

@@ -41,24 +41,6 @@ pub struct Outward<'t> {
     cones: [f64; 2],
 }
 
-/// Extremal contact of two triangles, see [`Outward::extremal`].
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Extremal {
-    /// The contact along the extremal axis of least overlap.
-    Contact(TriangleContact),
-    /// Extremal axes have too large overlaps, or are not known.
-    Unknown,
-    /// No axis is extremal.
-    None,
-}
-
-impl Extremal {
-    /// Returns the contact.
-    pub fn contact(self) -> Option<TriangleContact> {
-        if let Self::Contact(contact) = self { Some(contact) } else { None }
-    }
-}
-
 /// Directions, and their opposites, near an axis.
 #[derive(Copy, Clone, Debug)]
 struct DoubleCone {
@@ -104,25 +86,19 @@ impl<'t> Outward<'t> {
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
         most: f64,
         out: &mut ManifoldPoints,
-    ) -> Extremal {
-        let (axis, are_all) = self.extremal_axis(most / SHOWN, is_extremal);
-        let Some((gap, normal)) = axis else {
-            return if are_all { Extremal::None } else { Extremal::Unknown };
-        };
-        let contact = along(self.triangles.each_ref(), normal, out);
-        let is_shown = |contact: &TriangleContact| {
-            contact.distance <= SHOWN * gap && contact.distance >= -most
-        };
-        contact.filter(is_shown).map_or(Extremal::Unknown, Extremal::Contact)
+    ) -> Option<TriangleContact> {
+        let (gap, normal) = self.extremal_axis(most / SHOWN, is_extremal)?;
+        let contact = along(self.triangles.each_ref(), normal, out)?;
+        let is_shown = contact.distance <= SHOWN * gap && contact.distance >= -most;
+        is_shown.then_some(contact)
     }
 
     /// Returns the contact along the outward axis of least overlap, if a contact with that normal `may_count`. Extremal axes
     /// come first.
     ///
-    /// `has_extremal` is false if no axis is extremal. See [`extremal`](Self::extremal) for `is_extremal` and `out`.
+    /// See [`extremal`](Self::extremal) for `is_extremal` and `out`.
     pub fn least(
         &self,
-        has_extremal: bool,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
         may_count: impl Fn(DVec3) -> bool,
         out: &mut ManifoldPoints,
@@ -136,8 +112,7 @@ impl<'t> Outward<'t> {
             ControlFlow::Continue(())
         });
         let widest = widest?;
-        let extremal =
-            if has_extremal { self.extremal_axis(f64::INFINITY, is_extremal).0 } else { None };
+        let extremal = self.extremal_axis(f64::INFINITY, is_extremal);
         let (_, normal) = extremal.or_else(|| self.least_axis(widest))?;
         may_count(normal).then(|| along(self.triangles.each_ref(), normal, out))?
     }
@@ -150,37 +125,32 @@ impl<'t> Outward<'t> {
         normal1.dot(normal2).abs() < least
     }
 
-    /// Returns the extremal axis of least overlap, if that is at most `most`. Also returns true if no extremal axis
-    /// has more.
+    /// Returns the extremal axis of least overlap, if that is at most `most`.
     fn extremal_axis(
         &self,
         most: f64,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-    ) -> (Option<OutwardAxis>, bool) {
+    ) -> Option<OutwardAxis> {
         if self.are_cones_apart() {
-            return (None, true);
+            return None;
         }
-        let (mut axes, mut are_all) = (ArrayVec::<OutwardAxis, 22>::new(), true);
+        let mut axes = ArrayVec::<OutwardAxis, 22>::new();
         let cones =
             [0, 1].map(|i| DoubleCone { axis: self.normals[i], least_square: self.cones[i] });
         self.for_each(&cones, |direction, heights| {
             let square = direction.length_squared();
             // Before the division: most directions end here.
             if (0..2).all(|i| heights[i] * heights[i] >= self.cones[i] * square) {
-                let (gap, axis) = self.axis(direction);
-                are_all &= gap >= -most;
-                if gap >= -most {
-                    axes.push((gap, axis));
-                }
+                let axis = self.axis(direction);
+                axes.extend((axis.0 >= -most).then_some(axis));
             }
             ControlFlow::Continue(())
         });
         axes.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
-        let axis = axes.into_iter().find(|(_, axis)| {
+        axes.into_iter().find(|(_, axis)| {
             let ways = [*axis, -*axis];
             (0..2).all(|i| is_extremal(i, farthest(&self.triangles[i], ways[i]), ways[i]))
-        });
-        (axis, are_all)
+        })
     }
 
     /// Returns the outward axis of least overlap. Returns `None` if that is less than the overlap of a gap, `widest`.
