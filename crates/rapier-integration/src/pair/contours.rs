@@ -207,7 +207,7 @@ pub(super) fn find_ways(
 }
 
 impl<'a> Overlap<'a> {
-    /// A sheet may be left through both sides, and so may a shape of which triangles are wound unlike the others.
+    /// Sheets may be left through both sides. So may shapes with triangles that are wound unlike the others.
     fn of(shapes: &'a TriangleShapes<'a>, island: &[Crossing]) -> Self {
         let is_uniform =
             |i: usize, crossing: &Crossing| crossing.outward[i] == Some(shapes[i].outward());
@@ -216,8 +216,8 @@ impl<'a> Overlap<'a> {
     }
 
     /// Returns the shortest way by which shape 2 leaves an overlap, and whether the way is exact. Exact ways are the normal of two
-    /// faces across from each other, and the area vector of a flat contour. Other ways are the area vector, the normals
-    /// where it leads out from the middle, and the directions from the middle to the nearest points of both surfaces.
+    /// faces across from each other, and the area vector of a flat contour. Other ways are the area vector, and the normals
+    /// where it leads out from the middle. Directions from the middle to the nearest points of both surfaces are tried as well.
     fn way_across(&self, contour: &Contour, points: &Points) -> Option<(Way, bool)> {
         let Contour { middle, normal, is_flat, .. } = *contour;
         let is_near = |way: &DVec3| way.dot(normal) > SAME_SIDE;
