@@ -146,6 +146,7 @@ fn time_grows_with_the_triangles() {
         "{:34} {:>9} {:>22} {:>22}  growth",
         "ms, first and next query", "triangles", "stock", "SBBK"
     );
+    let is_slow_at_all = |few: [f64; 2], many: [f64; 2]| (0..2).any(|i| is_slow(few[i], many[i]));
     let mut slow = Vec::new();
     for (name, make) in FAMILIES {
         for is_flipped in [false, true] {
@@ -161,7 +162,7 @@ fn time_grows_with_the_triangles() {
                 println!("{name:34} {count:9} {:>22} {:>22}", shown[0], shown[1]);
             }
             let [few, _, many] = times.map(|(.., ours)| ours);
-            if (0..2).any(|i| is_slow(few[i], many[i])) {
+            if is_slow_at_all(few, many) {
                 slow.push((name, *make, is_flipped));
             }
         }
@@ -169,11 +170,7 @@ fn time_grows_with_the_triangles() {
     // Other load on the machine slows single measurements.
     slow.retain(|(_, make, is_flipped)| {
         let ours = |count| seconds(&SbbkDispatcher::default(), &make(count), *is_flipped, 1e-4);
-        let is_slow_again = || {
-            let [few, many] = [ours(COUNTS[0]), ours(COUNTS[2])];
-            (0..2).any(|i| is_slow(few[i], many[i]))
-        };
-        (0..3).all(|_| is_slow_again())
+        (0..3).all(|_| is_slow_at_all(ours(COUNTS[0]), ours(COUNTS[2])))
     });
     let slow: Vec<_> = slow.iter().map(|(name, ..)| name).collect();
     assert!(slow.is_empty(), "{slow:?}");

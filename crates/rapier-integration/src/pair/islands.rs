@@ -70,7 +70,7 @@ impl IslandWay {
 }
 
 impl Support {
-    pub(super) fn is_enough(self) -> bool {
+    fn is_enough(self) -> bool {
         self.pairs <= SUPPORTED * self.reliable
     }
 
@@ -89,7 +89,7 @@ pub(super) struct Crossing {
     pub(super) pair: [u32; 2],
     /// False if they have passed each other.
     pub(super) is_crossing: bool,
-    /// True if the triangles are so near that rounding decides whether they cross.
+    /// True if they have passed each other by so little that rounding decides.
     pub(super) is_touching: bool,
     /// Greatest depth of a contact that needs no proof that a point is far inside.
     pub(super) greatest: f64,
@@ -233,9 +233,9 @@ impl OverlapIslands {
         self.crossing(pair).is_none_or(Crossing::is_fine)
     }
 
-    /// Returns the support of the island of a crossing, if that has too few reliable contacts.
-    pub(super) fn open_support(&self, crossing: &Crossing) -> Option<Support> {
-        Some(self.support[crossing.island]).filter(|support| !support.is_enough())
+    /// Returns the support of an island, if that has too few reliable contacts.
+    pub(super) fn open_support(&self, island: usize) -> Option<Support> {
+        Some(self.support[island]).filter(|support| !support.is_enough())
     }
 
     /// Replaces `list` by the crossings that may be part of a contour, one island after another. Crossings with an unknown outer
@@ -252,6 +252,11 @@ impl OverlapIslands {
         self.ways_out[island]
     }
 
+    /// Returns the way out of an island, if contacts along the way come before those of the pairs.
+    pub(super) fn leading_way(&self, island: usize) -> Option<IslandWay> {
+        self.way_out(island).filter(|way| way.has_middle)
+    }
+
     /// Sets the way out of an island, and the contacts along the way.
     pub(super) fn set_way_out(
         &mut self,
@@ -263,15 +268,11 @@ impl OverlapIslands {
         self.of_contours.extend(contacts.map(|contact| (island, contact)));
     }
 
-    /// Returns the contacts of the contours of some islands.
+    /// Returns the contacts along the ways out of some islands.
     pub(super) fn of_contours(
         &self,
-        counts: impl Fn(&IslandWay, Support) -> bool,
+        counts: impl Fn(usize) -> bool,
     ) -> impl Iterator<Item = TriangleHit> {
-        let counts = move |island: usize| {
-            let support = self.support.get(island).copied().unwrap_or_default();
-            self.ways_out[island].is_some_and(|way| counts(&way, support))
-        };
         self.of_contours.iter().filter(move |(island, _)| counts(*island)).map(|(_, hit)| *hit)
     }
 

@@ -230,10 +230,11 @@ impl<'a> SurfaceFilter<'a> {
     /// Returns the crossing of triangles that cross or have passed each other, without a contact.
     fn crossing(&self, contact: &TriangleContact) -> Crossing {
         let shallow = self.shapes.filter_unit();
+        let is_crossing = contact.features.is_crossing();
         Crossing {
             pair: self.pair,
-            is_crossing: contact.features.is_crossing(),
-            is_touching: self.is_touching(contact, SIDE_ROUNDING),
+            is_crossing,
+            is_touching: !is_crossing && self.is_touching(contact, SIDE_ROUNDING),
             greatest: TRUSTED_DEPTH * contact.distance.abs().max(shallow),
             is_reliable: false,
             normal: DVec3::ZERO,

@@ -203,6 +203,7 @@ impl<'a> Pair for MeshPair<'a> {
 pub(crate) struct TriangleScratch {
     descent: DescentMemory,
     first: FirstPass,
+    clipped: ManifoldPoints,
     contours: ContourMemory,
     /// Normals of contacts.
     directions: Vec<DVec3>,
@@ -219,7 +220,6 @@ struct FirstPass {
     islands: OverlapIslands,
     /// True if triangles are in reach.
     is_near: bool,
-    clipped: ManifoldPoints,
 }
 
 impl FirstPass {
@@ -291,7 +291,7 @@ impl PairQuery for TriangleQuery<'_> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { first, contours, directions, .. } = scratch;
+        let TriangleScratch { first, clipped, contours, directions, .. } = scratch;
         first.clear();
         std::mem::swap(&mut first.contacts, contacts);
         let pass = |chunk: &mut [_], first: &mut FirstPass| {
@@ -300,7 +300,7 @@ impl PairQuery for TriangleQuery<'_> {
         in_chunks(candidates, LEAST_CANDIDATES, first, &pass);
         self.add_passing(first);
         std::mem::swap(&mut first.contacts, contacts);
-        let FirstPass { islands, clipped, is_near, upright, .. } = first;
+        let FirstPass { islands, is_near, upright, .. } = first;
         if self.shapes.is_side_doubtful(&islands.crossings) {
             return self.hold(candidates, limits, contacts);
         }
@@ -372,7 +372,7 @@ impl PairQuery for TriangleQuery<'_> {
         points: &mut ContactPoints,
     ) {
         let shapes = &mut self.shapes;
-        let clipped = &mut scratch.first.clipped;
+        let clipped = &mut scratch.clipped;
         points.points.clear();
         let Some(local) = shapes.local(*pair) else { return };
         let of_triangles = shapes.cones(*pair);

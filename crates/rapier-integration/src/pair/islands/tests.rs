@@ -25,7 +25,7 @@ fn support(islands: &OverlapIslands, pair: [u32; 2]) -> Support {
 }
 
 fn is_open(islands: &OverlapIslands, pair: [u32; 2]) -> bool {
-    islands.open_support(islands.crossing(pair).unwrap()).is_some()
+    islands.open_support(islands.crossing(pair).unwrap().island).is_some()
 }
 
 /// Would catch islands that are not joined through common triangles, and pairs that a second

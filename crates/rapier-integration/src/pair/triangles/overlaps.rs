@@ -6,7 +6,7 @@ use sbbk_core::query::TrianglePair;
 
 use super::TriangleQuery;
 use crate::pair::contours::{self, ContourMemory};
-use crate::pair::islands::{Crossing, IslandWay, OverlapIslands, Support};
+use crate::pair::islands::{Crossing, IslandWay, OverlapIslands};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
@@ -24,10 +24,10 @@ impl TriangleQuery<'_> {
     ) {
         islands.join();
         contours::find_ways(&self.shapes, islands, contours);
-        contacts.extend(islands.of_contours(|way, _| way.has_middle));
+        contacts.extend(islands.of_contours(|island| islands.leading_way(island).is_some()));
         let mut crossings = std::mem::take(&mut islands.crossings);
         crossings.retain_mut(|crossing| {
-            let way = islands.way_out(crossing.island).filter(|way| way.has_middle);
+            let way = islands.leading_way(crossing.island);
             let (counts, contact) = self.of_crossing(crossing, way, clipped);
             contacts.extend(contact.map(|contact| (crossing.pair, contact)));
             let is_touching = !counts && crossing.is_touching;
@@ -140,11 +140,11 @@ impl TriangleQuery<'_> {
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
-        let is_led = |way: &IslandWay, support: Support| !way.has_middle && !support.is_enough();
-        contacts.extend(islands.of_contours(is_led));
+        // Islands with a leading way have enough contacts.
+        contacts.extend(islands.of_contours(|island| islands.open_support(island).is_some()));
         for i in 0..islands.crossings.len() {
             let Some(crossing) = islands.open(i) else { continue };
-            let Some(support) = islands.open_support(&crossing) else { continue };
+            let Some(support) = islands.open_support(crossing.island) else { continue };
             let contact = match islands.way_out(crossing.island) {
                 Some(way) => self.contact_along(&crossing, way, clipped),
                 None => {
