@@ -252,7 +252,7 @@ impl OverlapIslands {
         self.ways_out[island]
     }
 
-    /// Returns the way out of an island, if contacts along the way come before those of the pairs.
+    /// Returns the way out of an island whose pairs all have contacts along it.
     pub(super) fn leading_way(&self, island: usize) -> Option<IslandWay> {
         self.way_out(island).filter(|way| way.has_middle)
     }
