@@ -61,6 +61,43 @@ fn a_box_that_lies_flat_touches_at_its_corners() {
     }
 }
 
+/// Would catch a capsule on its end that touches twice at one place: Rapier's solver has twice the work.
+#[test]
+fn a_capsule_has_a_point_at_each_end() {
+    let (dispatcher, mesh) = (SbbkDispatcher::default(), shape(&mesh::floor(400.0, 1)));
+    for tilt in [0.0, 0.3, FRAC_PI_2] {
+        let lowest = 0.3 * tilt.cos() + 0.2;
+        let pose = Pose3::new(Vec3::new(40.0, lowest, -20.0), Vec3::new(0.0, 0.0, tilt));
+        let capsule = SharedShape::capsule_y(0.3, 0.2);
+        let found = Question::new(&mesh, &*capsule, pose).fresh(&dispatcher);
+        assert_eq!(found.iter().map(|m| m.points.len()).collect::<Vec<_>>(), [2], "{tilt}");
+    }
+}
+
+/// Would catch components of normals that are rounding. Products of these are subnormal numbers, which slow Rapier's solver
+/// down by a fifth.
+#[test]
+fn normals_across_a_flat_floor_have_no_noise() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(9);
+    let floor = shape(&mesh::floor(400.0, 1));
+    let cube = mesh::cuboid(Vec3::splat(0.3), 2).shape();
+    for (name, shape) in shapes(0.6).into_iter().chain([("mesh", cube)]) {
+        for i in 0..40 {
+            // Bodies at rest are turned by as little.
+            let turn = Quat::from_scaled_axis(1e-7 * random.rand_float() * direction(&mut random));
+            let pose = Pose3::from_parts(Vec3::new(40.0, 0.1, -20.0), turn);
+            let question = Question::new(&floor, &*shape, pose).flipped(i % 2 == 0);
+            for manifold in question.fresh(&dispatcher) {
+                for part in [manifold.local_n1, manifold.local_n2].map(|n| n.to_array()) {
+                    let is_noise = |x: f32| x != 0.0 && x.abs() < f32::EPSILON;
+                    assert!(!part.into_iter().any(is_noise), "{name}: {part:?}");
+                }
+            }
+        }
+    }
+}
+
 /// Shapes of all kinds and sizes, against brute force in f64. Would catch a shape or pose taken for another, a
 /// missing radius, a tolerance with a unit, and a lost or invented triangle.
 #[test]

@@ -35,9 +35,9 @@ use sbbk_core::contact::convex::ConvexContact;
 
 use super::contact::{Hit, PartContact};
 
-/// Share of the size by which two distances must differ to count as different. Higher: ghosts stay.
-/// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
-const ROUNDED: f64 = 1.0e-12;
+/// Share of the size by which two distances must differ to count as different. Higher: ghosts stay, and corners of rounded
+/// features replace exact points. Lower: rounding picks one of two equal contacts at a common edge as the ghost.
+pub(super) const ROUNDED: f64 = 1.0e-12;
 
 /// Contacts at a feature that may be of a floor. Higher: slow at the hub of a fan. Lower: walls are ghosts where many triangles meet.
 const CROWD: usize = 64;

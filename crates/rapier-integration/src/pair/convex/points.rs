@@ -15,6 +15,7 @@ use sbbk_core::surface::area_vector;
 use sbbk_core::volumes::rounding::gamma;
 
 use super::contact::{NormalSource, PartContact};
+use super::ghosts::ROUNDED;
 use super::shape::ConvexShape;
 
 /// A contact point in the frame of the shape, without the rounding radius.
@@ -73,7 +74,7 @@ pub(super) fn contact_points(
     // Shapes other than cuboids may touch beside the corners of their features, which for a disc is a
     // square: they need the closest points, too.
     let is_cuboid = matches!(shape, ConvexShape::Cuboid(_));
-    if is_own && (!is_cuboid || !has_closest) {
+    if is_own && (has_rim || !has_closest) {
         found(closest);
     } else if is_neighbours && !is_cuboid {
         on_face(corners, on_shape, normal).into_iter().for_each(found);
@@ -104,7 +105,7 @@ fn overlap_points(
         if is_own && point.distance < contact.distance - slack || is_neighbours && beyond > slack {
             continue;
         }
-        has_closest |= point.distance <= contact.distance + slack;
+        has_closest |= point.distance <= contact.distance + ROUNDED * size;
         let distance = if is_own { point.distance.max(contact.distance) } else { point.distance };
         found(PointPair { distance, ..named(point, feature) });
     }
