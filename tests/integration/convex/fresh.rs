@@ -74,8 +74,8 @@ fn a_capsule_has_a_point_at_each_end() {
     }
 }
 
-/// Would catch components of normals that are rounding. Products of these are subnormal numbers, which slow Rapier's solver
-/// down by a fifth.
+/// Would catch components of normals that are rounding. Rapier's solver takes a fifth longer with
+/// these, as their products are subnormal numbers.
 #[test]
 fn normals_across_a_flat_floor_have_no_noise() {
     let dispatcher = SbbkDispatcher::default();
