@@ -122,7 +122,7 @@ fn casts_stop_at_the_first_impact() {
     assert!((10..40).contains(&hits), "{hits} hits");
 }
 
-/// Boxes slide along a wall, a little nearer than the target distance, up to another wall. Would catch casts
+/// Boxes slide along a wall, at the target distance or a little nearer, up to another wall. Would catch casts
 /// that stop at the edges within the first wall: character controllers would climb no stairs.
 #[test]
 fn casts_slide_along_a_wall_up_to_the_next_one() {
@@ -140,13 +140,15 @@ fn casts_slide_along_a_wall_up_to_the_next_one() {
         let start = Vec3::new(0.25 + TARGET * (1.0 - nearer), number(-1.0, 1.0), number(-3.0, 2.0));
         let (velocity, pos12) =
             (Vec3::new(0.0, number(-0.1, 0.1), 1.0), Pose3::from_translation(start));
+        // In some cases, the distance of the wall is the target to the last digit.
+        let target_distance = if case % 3 == 0 { start.x - 0.25 } else { TARGET };
         let options = ShapeCastOptions {
-            target_distance: TARGET,
+            target_distance,
             stop_at_penetration: false,
             ..ShapeCastOptions::with_max_time_of_impact(10.0)
         };
         let dispatcher = SbbkDispatcher::default();
-        let expected = 4.0 - 0.25 - TARGET - start.z;
+        let expected = 4.0 - 0.25 - target_distance - start.z;
         for body in [&Cuboid::new(Vec3::splat(0.25)) as &dyn Shape, &body] {
             for prepared in [false, true] {
                 let mesh = body.as_trimesh().filter(|_| prepared);

@@ -207,20 +207,26 @@ fn first_impact(
     options: &CastOptions,
     latest: f64,
 ) -> Option<(f64, TriangleContact)> {
-    let [t1, t2] = &pair.corners;
+    let target = f64::from(options.target_distance);
     let edges = pair.touching_distance() / ARRIVED;
     let mut time = 0.0;
     let mut last: Option<TriangleContact> = None;
     for _ in 0..STEP_LIMIT {
         let travel = velocity * time;
-        let mut contact = contact(t1, &t2.map(|v| v + travel), f64::INFINITY)?;
+        let mut contact = contact_after(pair, travel)?;
         let approach = -contact.normal.dot(velocity);
-        let left = contact.distance - f64::from(options.target_distance);
-        if left <= ARRIVED * (edges + travel.abs().element_sum()) {
+        let left = contact.distance - target;
+        let slack = ARRIVED * (edges + travel.abs().element_sum());
+        if left <= slack {
             let Some(last) = last else {
                 let counts = options.stop_at_penetration || approach > ARRIVED * velocity.length();
                 return counts.then_some((0.0, contact));
             };
+            let beyond = travel + velocity * (2.0 * slack / approach);
+            if target > slack && !is_within(pair, beyond, target - 0.5 * slack) {
+                // They pass each other at the target distance, and only come nearer by a rounding.
+                return None;
+            }
             // Triangles that touch have no better normal than the last one before.
             contact.normal = last.normal;
             return Some((time, contact));
@@ -237,6 +243,18 @@ fn first_impact(
         last = Some(contact);
     }
     last.map(|contact| (time, contact))
+}
+
+/// Returns the contact of two triangles after a motion of triangle 2.
+#[inline(always)]
+fn contact_after(pair: &TrianglePair, travel: DVec3) -> Option<TriangleContact> {
+    let [t1, t2] = &pair.corners;
+    contact(t1, &t2.map(|v| v + travel), f64::INFINITY)
+}
+
+/// Returns true if two triangles are within a distance after a motion of triangle 2.
+fn is_within(pair: &TrianglePair, travel: DVec3, distance: f64) -> bool {
+    contact_after(pair, travel).is_some_and(|contact| contact.distance <= distance)
 }
 
 /// Lower bounds of times of impact.
