@@ -105,6 +105,8 @@ pub(super) struct Crossing {
     pub(super) sheet: Option<SheetSide>,
     /// True if this contact pushes the wrong way.
     pub(super) is_rejected: bool,
+    /// False if the triangles do not cross after all.
+    pub(super) counts: bool,
     /// Index of the first crossing of the island.
     pub(super) island: usize,
 }

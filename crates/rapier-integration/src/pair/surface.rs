@@ -242,18 +242,16 @@ impl<'a> SurfaceFilter<'a> {
             outward: self.outward_signs(),
             sheet: self.sheet_side(self.are_solid()),
             is_rejected: false,
+            counts: false,
             island: 0,
         }
     }
 
-    /// Returns the extremal contact of a crossing. Also returns false for triangles that only touch, and for the far side of a
+    /// Returns the extremal contact of a crossing. Triangles that only touch do not count, nor does the far side of a
     /// thin wall, behind which the sheet is.
-    pub(super) fn find_extremal(
-        &self,
-        crossing: &mut Crossing,
-        clipped: &mut ManifoldPoints,
-    ) -> (bool, Option<TriangleSurfaceContact>) {
+    pub(super) fn find_extremal(&self, crossing: &mut Crossing) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
+        let clipped = &mut ManifoldPoints::new();
         let good = self.outward().extremal(ends, crossing.greatest, clipped);
         crossing.is_reliable = good.is_some();
         (crossing.normal, crossing.depth) =
@@ -261,9 +259,9 @@ impl<'a> SurfaceFilter<'a> {
         let is_lost = !crossing.is_crossing
             && (good.is_none() && crossing.is_touching
                 || crossing.sheet.is_some_and(|sheet| sheet.is_pushed_through(crossing.normal)));
+        crossing.counts = !is_lost;
         let source = ContactSource::OutwardAxis;
-        let good = good.filter(|_| !is_lost);
-        (!is_lost, good.map(|contact| TriangleSurfaceContact { contact, source }))
+        good.filter(|_| !is_lost).map(|contact| TriangleSurfaceContact { contact, source })
     }
 
     /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller sheet,
@@ -316,11 +314,10 @@ impl<'a> SurfaceFilter<'a> {
         &self,
         crossing: &Crossing,
         support: Support,
-        clipped: &mut ManifoldPoints,
     ) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
         let agrees = |normal: DVec3| support.agrees(normal);
-        let contact = self.outward().least(ends, agrees, clipped)?;
+        let contact = self.outward().least(ends, agrees, &mut ManifoldPoints::new())?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {

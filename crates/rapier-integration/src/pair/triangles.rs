@@ -203,7 +203,6 @@ impl<'a> Pair for MeshPair<'a> {
 pub(crate) struct TriangleScratch {
     descent: DescentMemory,
     first: FirstPass,
-    clipped: ManifoldPoints,
     contours: ContourMemory,
     /// Normals of contacts.
     directions: Vec<DVec3>,
@@ -291,7 +290,7 @@ impl PairQuery for TriangleQuery<'_> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { first, clipped, contours, directions, .. } = scratch;
+        let TriangleScratch { first, contours, directions, .. } = scratch;
         first.clear();
         std::mem::swap(&mut first.contacts, contacts);
         let pass = |chunk: &mut [_], first: &mut FirstPass| {
@@ -306,10 +305,10 @@ impl PairQuery for TriangleQuery<'_> {
         }
         let lead_one_way = meet_borders(upright, contacts);
         if !islands.crossings.is_empty() {
-            self.add_of_islands(islands, contours, clipped, contacts);
+            self.add_of_islands(islands, contours, contacts);
         }
         if self.needs_second_pass(islands) {
-            self.second_pass(islands, clipped, contacts);
+            self.second_pass(islands, contacts);
         }
         self.drop_lifted(islands.one_ways(), contacts);
         if limits.reach < f64::from(self.shapes.pose.prediction) {
@@ -368,16 +367,15 @@ impl PairQuery for TriangleQuery<'_> {
     fn points(
         &mut self,
         (pair, TriangleSurfaceContact { contact, source }): &TriangleHit,
-        scratch: &mut TriangleScratch,
+        _: &mut TriangleScratch,
         points: &mut ContactPoints,
     ) {
         let shapes = &mut self.shapes;
-        let clipped = &mut scratch.clipped;
+        let clipped = &mut ManifoldPoints::new();
         points.points.clear();
         let Some(local) = shapes.local(*pair) else { return };
         let of_triangles = shapes.cones(*pair);
         let [t1, t2] = &local.corners;
-        clipped.clear();
         if *source != ContactSource::PushOut {
             clip(t1, t2, contact.normal, clipped);
         }

@@ -6,11 +6,22 @@ use sbbk_core::query::TrianglePair;
 
 use super::TriangleQuery;
 use crate::pair::contours::{self, ContourMemory};
+use crate::pair::descents::{ChunkResult, in_chunks};
 use crate::pair::islands::{Crossing, IslandWay, OverlapIslands};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
 use crate::pair::ways::{ALIKE, RESTING_DEPTH, SAME_DIRECTION, greatest_overlap};
+
+/// Least number of crossings of a chunk. Higher: threads wait for each other; lower: threads take turns for chunks of
+/// a few microseconds.
+const LEAST_CROSSINGS: usize = 64;
+
+impl<T: Send> ChunkResult for ContactList<T> {
+    fn append(&mut self, next: Self) {
+        self.extend(next);
+    }
+}
 
 impl TriangleQuery<'_> {
     /// Adds the contacts of crossing triangles, and drops triangles that do not cross after all.
@@ -19,53 +30,50 @@ impl TriangleQuery<'_> {
         &self,
         islands: &mut OverlapIslands,
         contours: &mut ContourMemory,
-        clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         islands.join();
         contours::find_ways(&self.shapes, islands, contours);
         contacts.extend(islands.of_contours(|island| islands.leading_way(island).is_some()));
         let mut crossings = std::mem::take(&mut islands.crossings);
-        crossings.retain_mut(|crossing| {
-            let way = islands.leading_way(crossing.island);
-            let (counts, contact) = self.of_crossing(crossing, way, clipped);
-            contacts.extend(contact.map(|contact| (crossing.pair, contact)));
-            let is_touching = !counts && crossing.is_touching;
+        let add = |chunk: &mut [Crossing], contacts: &mut ContactList<_>| {
+            contacts.extend(chunk.iter_mut().filter_map(|crossing| {
+                let way = islands.leading_way(crossing.island);
+                Some((crossing.pair, self.of_crossing(crossing, way)?))
+            }));
+        };
+        in_chunks(&mut crossings, LEAST_CROSSINGS, contacts, &add);
+        crossings.retain(|crossing| {
+            let is_touching = !crossing.counts && crossing.is_touching;
             islands.touching.extend(is_touching.then_some(crossing.pair));
-            counts
+            crossing.counts
         });
         islands.crossings = crossings;
         keep_deepest(contacts);
     }
 
-    /// Returns the contact of a crossing pair: along the way out of its island, or else the extremal one. Also returns false if the
-    /// pair does not count as crossing.
+    /// Returns the contact of a crossing pair: along the way out of its island, or else the extremal one.
     fn of_crossing(
         &self,
         crossing: &mut Crossing,
         way: Option<IslandWay>,
-        clipped: &mut ManifoldPoints,
-    ) -> (bool, Option<TriangleSurfaceContact>) {
+    ) -> Option<TriangleSurfaceContact> {
         let Some(way) = way else {
-            let found = self
+            return self
                 .shapes
-                .with_filter(crossing.pair, |filter| filter.find_extremal(crossing, clipped));
-            return found.unwrap_or_default();
+                .with_filter(crossing.pair, |filter| filter.find_extremal(crossing))
+                .flatten();
         };
-        crossing.is_reliable = true;
+        (crossing.is_reliable, crossing.counts) = (true, true);
         (crossing.normal, crossing.depth) = (way.normal, way.length);
-        (true, self.contact_along(crossing, way, clipped))
+        self.contact_along(crossing, way)
     }
 
     /// Returns the contact of a crossing pair along the way out of its island.
-    fn contact_along(
-        &self,
-        crossing: &Crossing,
-        way: IslandWay,
-        clipped: &mut ManifoldPoints,
-    ) -> Option<TriangleSurfaceContact> {
+    fn contact_along(&self, crossing: &Crossing, way: IslandWay) -> Option<TriangleSurfaceContact> {
         let TrianglePair { corners, .. } = self.shapes.local(crossing.pair)?;
         let direction = way.towards(crossing.outward_normals(&corners).unwrap_or_default());
+        let clipped = &mut ManifoldPoints::new();
         let contact = contact_along(corners.each_ref(), direction, clipped)?;
         let source = ContactSource::OutwardAxis;
         (contact.distance <= 0.0).then_some(TriangleSurfaceContact { contact, source })
@@ -136,7 +144,6 @@ impl TriangleQuery<'_> {
     pub(super) fn second_pass(
         &self,
         islands: &OverlapIslands,
-        clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
@@ -146,10 +153,9 @@ impl TriangleQuery<'_> {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(support) = islands.open_support(crossing.island) else { continue };
             let contact = match islands.way_out(crossing.island) {
-                Some(way) => self.contact_along(&crossing, way, clipped),
+                Some(way) => self.contact_along(&crossing, way),
                 None => {
-                    let then =
-                        |it: &SurfaceFilter<'_>| it.supporting_contact(&crossing, support, clipped);
+                    let then = |it: &SurfaceFilter<'_>| it.supporting_contact(&crossing, support);
                     self.shapes.with_filter(crossing.pair, then).flatten()
                 }
             };
