@@ -14,7 +14,7 @@
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
-use sbbk_core::contact::{Feature, ManifoldPoints, Outward, TriangleContact};
+use sbbk_core::contact::{Feature, Outward, TriangleContact};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side, area_vector};
 
@@ -251,8 +251,7 @@ impl<'a> SurfaceFilter<'a> {
     /// thin wall, behind which the sheet is.
     pub(super) fn find_extremal(&self, crossing: &mut Crossing) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let clipped = &mut ManifoldPoints::new();
-        let good = self.outward().extremal(ends, crossing.greatest, clipped);
+        let good = self.outward().extremal(ends, crossing.greatest);
         crossing.is_reliable = good.is_some();
         (crossing.normal, crossing.depth) =
             good.map_or_else(Default::default, |good| (good.normal, -good.distance));
@@ -317,7 +316,7 @@ impl<'a> SurfaceFilter<'a> {
     ) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
         let agrees = |normal: DVec3| support.agrees(normal);
-        let contact = self.outward().least(ends, agrees, &mut ManifoldPoints::new())?;
+        let contact = self.outward().least(ends, agrees)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {

@@ -79,16 +79,14 @@ impl<'t> Outward<'t> {
     /// Returns the contact along the extremal axis of least overlap, if that is at most `most`.
     ///
     /// `is_extremal` returns true if no neighbour of a feature of triangle 1 (0) or 2 (1) is farther in a direction.
-    /// The deepest points give the distance; if these show less than the overlap, there is no contact. `out` gets the
-    /// contact points, as from [`clip`](super::clip).
+    /// The deepest points give the distance; if these show less than the overlap, there is no contact.
     pub fn extremal(
         &self,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
         most: f64,
-        out: &mut ManifoldPoints,
     ) -> Option<TriangleContact> {
         let (gap, normal) = self.extremal_axis(most / SHOWN, is_extremal)?;
-        let contact = along(self.triangles.each_ref(), normal, out)?;
+        let contact = along(self.triangles.each_ref(), normal)?;
         let is_shown = contact.distance <= SHOWN * gap && contact.distance >= -most;
         is_shown.then_some(contact)
     }
@@ -96,12 +94,11 @@ impl<'t> Outward<'t> {
     /// Returns the contact along the outward axis of least overlap, if a contact with that normal `may_count`. Extremal axes
     /// come first.
     ///
-    /// See [`extremal`](Self::extremal) for `is_extremal` and `out`.
+    /// See [`extremal`](Self::extremal) for `is_extremal`.
     pub fn least(
         &self,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
         may_count: impl Fn(DVec3) -> bool,
-        out: &mut ManifoldPoints,
     ) -> Option<TriangleContact> {
         let mut widest = None;
         self.for_each(&[], |direction, _| {
@@ -114,7 +111,7 @@ impl<'t> Outward<'t> {
         let widest = widest?;
         let extremal = self.extremal_axis(f64::INFINITY, is_extremal);
         let (_, normal) = extremal.or_else(|| self.least_axis(widest))?;
-        may_count(normal).then(|| along(self.triangles.each_ref(), normal, out))?
+        may_count(normal).then(|| along(self.triangles.each_ref(), normal))?
     }
 
     /// Returns true if no axis is in both cones.
@@ -239,22 +236,15 @@ impl<'t> Outward<'t> {
 }
 
 /// Returns the contact of overlapping triangles along a unit axis by which triangle 2 leaves triangle 1. `None` if no points are
-/// in line with the axis. `out` gets the contact points, as from [`clip`](super::clip).
-pub fn contact_along(
-    triangles: [&[DVec3; 3]; 2],
-    axis: DVec3,
-    out: &mut ManifoldPoints,
-) -> Option<TriangleContact> {
-    along(triangles.map(Triangle::new).each_ref(), axis, out)
+/// in line with the axis.
+pub fn contact_along(triangles: [&[DVec3; 3]; 2], axis: DVec3) -> Option<TriangleContact> {
+    along(triangles.map(Triangle::new).each_ref(), axis)
 }
 
-fn along(
-    [t1, t2]: [&Triangle<'_>; 2],
-    axis: DVec3,
-    out: &mut ManifoldPoints,
-) -> Option<TriangleContact> {
-    clip_triangles(t1, t2, axis, out);
-    let contact = deepest(out, axis)?;
+fn along([t1, t2]: [&Triangle<'_>; 2], axis: DVec3) -> Option<TriangleContact> {
+    let mut points = ManifoldPoints::new();
+    clip_triangles(t1, t2, axis, &mut points);
+    let contact = deepest(&points, axis)?;
     Some(TriangleContact { features: contact.features.crossing(), ..contact })
 }
 

@@ -13,10 +13,7 @@ fn penetration(
     ends: impl Fn(usize, Feature, DVec3) -> bool,
 ) -> Option<(TriangleContact, bool)> {
     let pair = Outward::new([t1, t2], solid.map(|is_solid| is_solid.then_some(1.0)), [0.0; 2]);
-    let least = |axis: DVec3, least: f64| {
-        let mut points = ManifoldPoints::new();
-        pair.least(&ends, |normal| normal.dot(axis) >= least, &mut points)
-    };
+    let least = |axis: DVec3, least: f64| pair.least(&ends, |normal| normal.dot(axis) >= least);
     let found = least(DVec3::ZERO, 0.0);
     let normal = found.map_or(DVec3::X, |contact| contact.normal);
     for (turned, cosine, counts) in [(0.0, 0.9999, true), (0.2, 0.97, true), (0.3, 0.97, false)] {
@@ -25,10 +22,10 @@ fn penetration(
         assert_eq!(least(axis, cosine), found.filter(|_| counts));
     }
     if let Some(found) = found {
-        let along = contact_along([t1, t2], found.normal, &mut ManifoldPoints::new());
+        let along = contact_along([t1, t2], found.normal);
         assert_eq!(along, Some(found));
     }
-    let find = |most| pair.extremal(&ends, most, &mut ManifoldPoints::new());
+    let find = |most| pair.extremal(&ends, most);
     let extremal = find(1e9);
     assert!(extremal.is_none() || extremal == found);
     for most in [0.001, 0.1, 10.0] {

@@ -16,6 +16,7 @@ fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>)
         outward: [sheet.is_none().then_some(1.0), Some(1.0)],
         sheet,
         is_rejected: false,
+        counts: true,
         island: 0,
     }
 }

@@ -1,7 +1,7 @@
 //! Contacts of meshes that overlap, after the first pass.
 
 use glamx::DVec3;
-use sbbk_core::contact::{ManifoldPoints, contact_along};
+use sbbk_core::contact::contact_along;
 use sbbk_core::query::TrianglePair;
 
 use super::TriangleQuery;
@@ -73,8 +73,7 @@ impl TriangleQuery<'_> {
     fn contact_along(&self, crossing: &Crossing, way: IslandWay) -> Option<TriangleSurfaceContact> {
         let TrianglePair { corners, .. } = self.shapes.local(crossing.pair)?;
         let direction = way.towards(crossing.outward_normals(&corners).unwrap_or_default());
-        let clipped = &mut ManifoldPoints::new();
-        let contact = contact_along(corners.each_ref(), direction, clipped)?;
+        let contact = contact_along(corners.each_ref(), direction)?;
         let source = ContactSource::OutwardAxis;
         (contact.distance <= 0.0).then_some(TriangleSurfaceContact { contact, source })
     }
