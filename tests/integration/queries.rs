@@ -136,7 +136,7 @@ fn casts_slide_along_a_wall_up_to_the_next_one() {
             [side.mapped(|at| at - 0.5 * Vec3::X), end.mapped(|at| at + Vec3::new(1.5, 0.0, 4.5))];
         let walls = shape(&Mesh::merged("walls", &walls));
         let body = shape(&mesh::cuboid(Vec3::splat(0.25), case % 4 + 1));
-        let nearer = 10.0_f32.powf(number(-5.0, -1.0));
+        let nearer = 10.0_f32.powf(number(-8.0, -1.0));
         let start = Vec3::new(0.25 + TARGET * (1.0 - nearer), number(-1.0, 1.0), number(-3.0, 2.0));
         let (velocity, pos12) =
             (Vec3::new(0.0, number(-0.1, 0.1), 1.0), Pose3::from_translation(start));

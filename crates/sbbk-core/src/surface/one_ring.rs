@@ -11,7 +11,7 @@ use super::sides::Side;
 use super::slopes::{
     Bend, FLAT, Heights, LONG, PlaceMemo, RISE, RISE_TO_FACE, Signs, Slopes, angle,
 };
-use super::triangle::{area_vector, seam, touches};
+use super::triangle::{area_vector, clip, longest_side, seam, touches};
 use crate::contact::Feature;
 use crate::contact::convex::{PointSupport, convex_contact};
 use crate::simd::each;
@@ -134,6 +134,13 @@ impl<F: Facets> Around<F> {
                 }
             } else {
                 ends.for_each(|end| slopes.add(end, direction));
+                // The steepest way may lead between the corners.
+                let uphill = direction.reject_from(area_vector(corners));
+                let way = longest_side(corners) * uphill.normalize_or_zero();
+                let is_inside = |[from, to]: [DVec3; 2]| from.distance(to) > 4.0 * rounding;
+                if clip(corners, [DVec3::ZERO, way], rounding).is_some_and(is_inside) {
+                    slopes.rise = slopes.rise.max(uphill.length_squared());
+                }
             }
         });
         slopes.rise > most * most
