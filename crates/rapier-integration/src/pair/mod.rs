@@ -23,7 +23,7 @@ mod ways;
 mod write;
 
 pub(crate) use convex::{
-    ConvexPair, ConvexSearch, ConvexShape, FoundTriangle, Parts, PlacedPart, WIDE,
+    ConvexPair, ConvexSearch, ConvexShape, FoundTriangle, Parts, PlacedPart, WIDE, lowest,
 };
 pub(crate) use descents::BvhDescent;
 pub(crate) use field::Field;

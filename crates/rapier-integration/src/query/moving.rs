@@ -11,11 +11,12 @@ use parry3d::math::Real;
 use parry3d::query::NonlinearRigidMotion;
 use sbbk_core::query::{Advance, AdvanceOptions, Bodies, advance};
 use sbbk_core::surface::area_vector;
-use sbbk_core::traverse::Placement;
+use sbbk_core::traverse::{Placement, TestedBox};
+use sbbk_core::volumes::rounding::gamma;
 
 use super::Found;
-use super::nonlinear::{NonlinearCast, approach_bound, lever, place, turned};
-use crate::pair::{ConvexSearch, STRETCH};
+use super::nonlinear::{NonlinearCast, lever, place, turned};
+use crate::pair::{ConvexSearch, STRETCH, lowest};
 
 /// Duration of the first window, as a multiple of the time in which the nearest triangle may be met.
 /// Higher: more triangles that are not met are advanced; lower: more windows.
@@ -69,15 +70,23 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
             return None;
         }
         let (mut from, mut window) = (start, 0.0);
+        let balls = self.search.mesh_place.swap(self.search.balls());
+        let [first, end] = self.cast.meeting_of_balls(balls, &self.options)?;
         loop {
             self.search.place(&self.cast.placement_at(from));
             if from == start && !self.cast.stop_at_penetration {
                 let contact = self.search.deepest(tolerance.max(SINK * self.thickness));
                 self.sunk = contact.map(|contact| -contact.contact.distance);
             }
-            window = self.window(from, window)?;
+            // At the start, shapes near the mesh count as in contact.
+            if from < first {
+                from = first;
+                self.search.place(&self.cast.placement_at(from));
+            }
+            let axis;
+            (window, axis) = self.window(from, window)?;
             let until = (from + window).min(end);
-            if let Some(found) = self.soonest(from, until) {
+            if let Some(found) = self.soonest(from, until, axis) {
                 let is_at_start = found.time == start;
                 return if is_at_start { self.deepest_at_start() } else { None }.or(Some(found));
             }
@@ -88,17 +97,21 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         }
     }
 
-    /// Returns the duration of the next window. A mesh that does not turn takes one window.
-    fn window(&self, from: f64, previous: f64) -> Option<f64> {
+    /// Returns the duration of the next window, and the normal of the nearest triangle. It is a unit vector of space toward the
+    /// mesh. A mesh that does not turn takes one window and has no normal.
+    fn window(&self, from: f64, previous: f64) -> Option<(f64, Option<DVec3>)> {
         let AdvanceOptions { end, speed_bound, tolerance, .. } = self.options;
         if self.sweep().is_some() {
-            return Some(f64::INFINITY);
+            return Some((f64::INFINITY, None));
         }
         let reach = (speed_bound * (end - from)).max(0.0) + tolerance;
-        let distance = self.search.nearest(reach)?.contact.distance.max(1.0e3 * tolerance);
+        let nearest = self.search.nearest(reach)?.contact;
+        let [_, shape] = self.motions();
+        let axis = (place(shape, from).rotation * -nearest.normal).try_normalize();
+        let distance = nearest.distance.max(1.0e3 * tolerance);
         let window = (WINDOW * distance / speed_bound).max(2.0 * previous);
         // An infinite or unknown speed bounds nothing.
-        Some(if window > 0.0 { window } else { f64::INFINITY })
+        Some((if window > 0.0 { window } else { f64::INFINITY }, axis))
     }
 
     /// A box of the mesh's frame that holds the shape at the start, however it turns, and its velocity.
@@ -121,7 +134,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         Some((Aabb::from_half_extents(centre, Vec3::splat(reach)), velocity))
     }
 
-    fn soonest(&self, from: f64, until: f64) -> Option<Advance<Found>> {
+    fn soonest(&self, from: f64, until: f64, axis: Option<DVec3>) -> Option<Advance<Found>> {
         let first = Cell::new(None::<Advance<Found>>);
         let time = |triangle, limit: f64| {
             let found = self.triangle_impact(triangle, from, (from + limit).min(until))?;
@@ -130,7 +143,9 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
             }
             Some(found.time - from)
         };
-        self.search.soonest(until - from, self.options.speed_bound, self.sweep(), time);
+        let front = axis.map(|axis| Front::new(self, axis, from));
+        let clear = |node| front.as_ref().map_or(0.0, |front| front.clear_of_box(self, node));
+        self.search.soonest(until - from, self.options.speed_bound, self.sweep(), clear, time);
         first.into_inner()
     }
 
@@ -218,6 +233,67 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
     }
 }
 
+/// A plane that the shape touches at a time, and the speeds at which bodies approach across it.
+///
+/// A point at `r` from the centre of its motion has the velocity `w × r` against the centre. The
+/// part along `a` is `a·(w × r) = r·(a × w)`, and `r` keeps its length.
+struct Front {
+    /// The axis across the plane, in the frame of the mesh. It points from the shape to the mesh.
+    in_mesh: DVec3,
+    /// Heights of the shape, and of a ball that holds it however it turns, above the origin of the mesh.
+    heights: [f64; 2],
+    /// Speeds of the shape, and of the ball, toward the centre of the mesh's motion.
+    speeds: [f64; 2],
+    /// Speed of the mesh's points per length of their lever.
+    turn: f64,
+    tolerance: f64,
+}
+
+impl Front {
+    fn new(moving: &MovingConvex<'_, '_>, axis: DVec3, time: f64) -> Self {
+        let search = &moving.search;
+        let [mesh, shape] = moving.motions();
+        let [mesh_place, shape_place] = [mesh, shape].map(|motion| place(motion, time));
+        let lever = lever(shape, &search.balls()[1]);
+        let height = search.height_along(shape_place.rotation.transpose() * axis);
+        let centre = axis.dot(shape_place.to_frame1(shape.local_center, Vec3::ZERO));
+        let heights = [axis.dot(shape_place.translation) + height, centre + lever];
+        let linear = (shape.linvel.as_dvec3() - mesh.linvel.as_dvec3()).dot(axis);
+        Self {
+            in_mesh: mesh_place.rotation.transpose() * axis,
+            heights: heights.map(|height| height - axis.dot(mesh_place.translation)),
+            speeds: [linear + turned(axis.cross(shape.angvel.as_dvec3()), lever), linear],
+            turn: axis.cross(mesh.angvel.as_dvec3()).length(),
+            tolerance: moving.options.tolerance,
+        }
+    }
+
+    /// Returns a time in which the shape does not reach a part of the mesh. The part has the least coordinate `lowest` along the
+    /// axis, and is at most `lever` from the centre of the mesh's motion.
+    fn clear(&self, lowest: f64, lever: f64) -> f64 {
+        let clear = [0, 1].map(|i| {
+            let gap = lowest - self.heights[i] - self.tolerance;
+            let speed = (self.speeds[i] + self.turn * lever) * (1.0 + STRETCH);
+            if gap > 0.0 && speed <= 0.0 {
+                return f64::INFINITY;
+            }
+            // The maximum of a number and a NaN is the number.
+            (gap.max(0.0) / speed).max(0.0)
+        });
+        clear[0].max(clear[1])
+    }
+
+    /// Returns [`clear`](Self::clear) of a box of the mesh.
+    fn clear_of_box(&self, moving: &MovingConvex<'_, '_>, node: TestedBox) -> f64 {
+        let [mesh, _] = moving.motions();
+        let (centre, extent) = node.centre_extent();
+        let lost = f64::from(gamma(8) * moving.search.mesh.magnitude());
+        let arm = centre.as_dvec3() - mesh.local_center.as_dvec3();
+        let lever = arm.length() + extent.as_dvec3().length() + 2.0 * lost;
+        self.clear(lowest(node, self.in_mesh) - 2.0 * lost, lever)
+    }
+}
+
 /// One triangle of the mesh and the shape.
 struct MovingTriangle<'a> {
     moving: &'a MovingConvex<'a, 'a>,
@@ -264,8 +340,14 @@ impl<'a> MovingTriangle<'a> {
     /// its acceleration, and `t` is the time between. The gap obeys the same bound.
     fn clear_along(&self, axis: DVec3, depth: f64, from: f64, end: f64) -> f64 {
         let tolerance = self.moving.options.tolerance;
+        let front = Front::new(self.moving, axis, from);
+        let [a, b, c] = self.corners.map(|corner| front.in_mesh.dot(corner));
+        let by_speed = front.clear(a.min(b).min(c) + depth, self.levers[0]);
+        if from + by_speed > end {
+            return f64::INFINITY;
+        }
         let gap_at = |time| depth + self.gap(axis, time);
-        let (mut time, mut gap, mut slope) = (from, gap_at(from), 0.0);
+        let (mut time, mut gap, mut slope) = (from + by_speed, gap_at(from + by_speed), 0.0);
         for _ in 0..PLANE_STEPS {
             let is_apart = gap > tolerance;
             if !is_apart {
@@ -292,23 +374,7 @@ impl<'a> MovingTriangle<'a> {
             time += step * (gap - bend) / (gap - next);
             gap = gap_at(time);
         }
-        (time - from).max(self.clear_by_speed(axis, from))
-    }
-
-    /// Returns a lower bound of [`clear_along`](Self::clear_along), from the greatest speed of all points.
-    /// A second bound replaces the shape by a ball that does not turn.
-    fn clear_by_speed(&self, axis: DVec3, from: f64) -> f64 {
-        let [mesh, shape] = self.moving.motions();
-        let clear = |gap: f64, levers: [f64; 2]| {
-            let speed = approach_bound([shape, mesh], axis, [levers[1], levers[0]]);
-            // The maximum of a number and a NaN is the number: 0 may be divided by 0.
-            ((gap - self.moving.options.tolerance).max(0.0) / speed).max(0.0)
-        };
-        let [lowest, _] = self.heights(axis, from);
-        let centre = place(shape, from).to_frame1(shape.local_center, Vec3::ZERO);
-        let of_ball = lowest - axis.dot(centre) - self.levers[1];
-        let of_shape = clear(self.gap(axis, from), self.levers);
-        of_shape.max(clear(of_ball, [self.levers[0], 0.0]))
+        time - from
     }
 
     fn gap(&self, axis: DVec3, time: f64) -> f64 {

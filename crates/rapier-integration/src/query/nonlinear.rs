@@ -82,7 +82,11 @@ impl NonlinearCast<'_> {
     ///
     /// The centres of motions move in straight lines. With `c` and `v` from centre 1 to centre 2, the times solve
     /// `|c + v t| = R`. Here `R` is the sum of the radii.
-    fn meeting_of_balls(&self, balls: [Sphere; 2], options: &AdvanceOptions) -> Option<[f64; 2]> {
+    pub(super) fn meeting_of_balls(
+        &self,
+        balls: [Sphere; 2],
+        options: &AdvanceOptions,
+    ) -> Option<[f64; 2]> {
         let [lever1, lever2] = [0, 1].map(|i| lever(self.motions[i], &balls[i]));
         let [from1, from2] = self.motions.map(centre);
         let [velocity1, velocity2] = self.motions.map(|motion| motion.linvel.as_dvec3());
@@ -173,22 +177,6 @@ impl NonlinearCast<'_> {
 /// Returns the greatest distance of a ball around a body from the centre of its motion.
 pub(super) fn lever(motion: &NonlinearRigidMotion, ball: &Sphere) -> f64 {
     (motion.local_center - ball.centre).as_dvec3().length() + f64::from(ball.radius)
-}
-
-/// Bound on the speed at which points of two bodies approach along a unit vector of space that
-/// points from the first to the second.
-///
-/// A point at `r` from the centre of its motion has the velocity `w × r` against the centre. The
-/// part along `a` is `a·(w × r) = r·(a × w)`, and `r` keeps its length.
-pub(super) fn approach_bound(
-    [one, two]: [&NonlinearRigidMotion; 2],
-    axis: DVec3,
-    levers: [f64; 2],
-) -> f64 {
-    let linear = (one.linvel.as_dvec3() - two.linvel.as_dvec3()).dot(axis);
-    let turns = [one, two].map(|motion| axis.cross(motion.angvel.as_dvec3()));
-    let least = linear + turned(turns[0], levers[0]) + turned(turns[1], levers[1]);
-    least.max(0.0) * (1.0 + STRETCH)
 }
 
 /// Returns `|turn| * lever`, which is 0 for no turn even if the lever is infinite.

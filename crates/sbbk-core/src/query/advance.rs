@@ -121,7 +121,8 @@ pub struct Advance<P> {
 /// Returns the first time at which body 2, at `placement_at(time)` in the frame of body 1, is within
 /// the tolerance of body 1.
 ///
-/// `None` if there is no such time until the end, or if a number is not finite. Bodies that are
+/// Bodies that may meet before the next f64 after a time have met at that time. `None` if there is no such time until the end, or
+/// if a number is not finite. Bodies that are
 /// within the tolerance at the end, and would touch later, may have none.
 pub fn advance<B: Bodies>(
     bodies: &mut B,
@@ -183,13 +184,75 @@ fn advance_except<B: Bodies>(
         let reach = (speed_bound * (end - time)).max(0.0) + tolerance;
         let placement = placement_at(time);
         let pair = bodies.nearest(&placement, reach, excluded)?;
-        let has_converged = pair.distance() <= tolerance;
-        last = Some(Advance { time, pair, placement, has_converged });
-        if has_converged {
+        let is_near = pair.distance() <= tolerance;
+        last = Some(Advance { time, pair, placement, has_converged: is_near });
+        if is_near {
             break;
         }
-        let clear = pair.distance() / speed_bound;
-        time += clear.max(bodies.clear_time(&pair, time, excluded));
+        let clear = (pair.distance() / speed_bound).max(bodies.clear_time(&pair, time, excluded));
+        if clear == f64::INFINITY {
+            return None;
+        }
+        // Bodies that may meet before the next number have met. An infinite speed bounds nothing.
+        if time + clear <= time {
+            let has_converged = speed_bound.is_finite();
+            return last.map(|last| Advance { has_converged, ..last });
+        }
+        time += clear;
     }
     last
+}
+
+#[cfg(test)]
+mod tests {
+    use glamx::Pose3;
+
+    use super::*;
+
+    /// Bodies that stay at a distance, and the number of searches.
+    struct Still(f64, usize);
+
+    #[derive(Copy, Clone)]
+    struct Pair(f64);
+
+    impl PartPair for Pair {
+        fn distance(&self) -> f64 {
+            self.0
+        }
+
+        fn name(&self) -> [u32; 2] {
+            [0; 2]
+        }
+    }
+
+    impl Bodies for Still {
+        type Pair = Pair;
+
+        fn nearest(&mut self, _: &Placement, _: f64, _: &[[u32; 2]]) -> Option<Pair> {
+            self.1 += 1;
+            Some(Pair(self.0))
+        }
+
+        fn within(&mut self, _: &Placement, _: f64, _: impl FnMut(Pair)) {}
+    }
+
+    /// Would catch steps that are too short to change the time, or infinite.
+    #[test]
+    fn no_step_leaves_the_time_as_it_is() {
+        for (speed_bound, has_met) in [(1.0e12, true), (0.0, false)] {
+            let bodies = &mut Still(1.0e-6, 0);
+            let options = AdvanceOptions {
+                start: 1.0,
+                end: 2.0,
+                speed_bound,
+                tolerance: 1.0e-9,
+                step_limit: 2000,
+            };
+            let found = advance(bodies, |_| Placement::new(&Pose3::IDENTITY), options);
+            assert_eq!(
+                (found.map(|found| found.has_converged), bodies.1),
+                (has_met.then_some(true), 1)
+            );
+        }
+    }
 }

@@ -24,6 +24,7 @@ mod shape;
 mod triangle_part;
 mod walls;
 
+pub(crate) use near::lowest;
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::{Parts, PlacedPart};
 pub(crate) use search::{ConvexSearch, FoundTriangle, WIDE};

@@ -149,7 +149,7 @@ pub(super) fn time_of(
 }
 
 /// Returns the least coordinate of a box along a direction.
-pub(super) fn lowest(node: TestedBox, normal: DVec3) -> f64 {
+pub(crate) fn lowest(node: TestedBox, normal: DVec3) -> f64 {
     let (centre, extent) = node.centre_extent();
     normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3())
 }

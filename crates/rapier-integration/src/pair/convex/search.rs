@@ -209,12 +209,14 @@ impl<'a> ConvexSearch<'a> {
     }
 
     /// Calls `time` with triangles that may have the least time up to a limit. No time is less than the distance
-    /// divided by `speed`. A `sweep` is a box around the shape, and its velocity in the frame of the mesh.
+    /// divided by `speed`, or than the time in which a box is `clear`. A `sweep` is a box around the shape, and its velocity in the
+    /// frame of the mesh.
     pub(crate) fn soonest(
         &self,
         limit: f64,
         speed: f64,
         sweep: Option<(Aabb, DVec3)>,
+        clear: impl Fn(TestedBox) -> f64,
         time: impl Fn(u32, f64) -> Option<f64>,
     ) {
         let time = |triangle, limit| Some((time(triangle, limit)? as Real, ()));
@@ -223,7 +225,8 @@ impl<'a> ConvexSearch<'a> {
             self.least(limit, bound, time)
         } else {
             let (gap, unit) = (self.gap(), (1.0 / speed) as Real);
-            self.least(limit, |node| gap(node) * unit, time)
+            let bound = |node| (gap(node) * unit).max((clear(node) as Real).next_down());
+            self.least(limit, bound, time)
         };
     }
 
