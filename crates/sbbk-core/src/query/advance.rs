@@ -121,9 +121,8 @@ pub struct Advance<P> {
 /// Returns the first time at which body 2, at `placement_at(time)` in the frame of body 1, is within
 /// the tolerance of body 1.
 ///
-/// Bodies that may meet before the next f64 after a time have met at that time. `None` if there is no such time until the end, or
-/// if a number is not finite. Bodies that are
-/// within the tolerance at the end, and would touch later, may have none.
+/// Bodies that may meet before the next f64 after a time have met at that time. `None` if there is no such time until the end,
+/// or if a number is not finite. Bodies that are within the tolerance at the end, and would touch later, may have none.
 pub fn advance<B: Bodies>(
     bodies: &mut B,
     placement_at: impl Fn(f64) -> Placement,
@@ -184,21 +183,19 @@ fn advance_except<B: Bodies>(
         let reach = (speed_bound * (end - time)).max(0.0) + tolerance;
         let placement = placement_at(time);
         let pair = bodies.nearest(&placement, reach, excluded)?;
-        let is_near = pair.distance() <= tolerance;
-        last = Some(Advance { time, pair, placement, has_converged: is_near });
-        if is_near {
-            break;
+        let found = Advance { time, pair, placement, has_converged: pair.distance() <= tolerance };
+        if found.has_converged {
+            return Some(found);
         }
         let clear = (pair.distance() / speed_bound).max(bodies.clear_time(&pair, time, excluded));
         if clear == f64::INFINITY {
             return None;
         }
-        // Bodies that may meet before the next number have met. An infinite speed bounds nothing.
         if time + clear <= time {
-            let has_converged = speed_bound.is_finite();
-            return last.map(|last| Advance { has_converged, ..last });
+            // An infinite speed bounds nothing.
+            return Some(Advance { has_converged: speed_bound.is_finite(), ..found });
         }
-        time += clear;
+        (time, last) = (time + clear, Some(found));
     }
     last
 }

@@ -121,10 +121,11 @@ pub fn cast(
 }
 
 /// Returns the first impact that `counts`, among those at a target distance and at less and less. An impact at distance zero
-/// always counts. `cast` returns the impact at a target distance.
+/// always counts. `cast` returns the impact at a target distance, and `distance` the distance of an impact.
 pub fn first_that_counts<C>(
     target_distance: f32,
     cast: impl Fn(f32) -> Option<C>,
+    distance: impl Fn(&C) -> f64,
     counts: impl Fn(&C) -> bool,
 ) -> Option<C> {
     let mut target = target_distance;
@@ -133,7 +134,8 @@ pub fn first_that_counts<C>(
         if counts(&found) {
             return Some(found);
         }
-        target *= NEXT_TARGET;
+        // Targets beyond the distance at the start have the same impact.
+        target = NEXT_TARGET * target.min((distance(&found) as f32).max(0.0));
     }
     cast(0.0)
 }
@@ -171,7 +173,7 @@ impl Cast {
             let pair = FoundPair::new([triangle1, triangle2], &pair, contact);
             Some(Self { time, pair, is_penetrating })
         };
-        first_that_counts(options.target_distance, cast, counts)
+        first_that_counts(options.target_distance, cast, |cast| cast.pair.contact.distance, counts)
     }
 }
 

@@ -68,7 +68,8 @@ impl ConvexSearch<'_> {
                 self.cast_triangle(triangle, of_triangle, options, latest)
             };
             let counts = |cast: &Cast<FoundTriangle>| !may_slide || self.is_minimum(&cast.pair);
-            let cast = first_that_counts(target_distance, cast, counts)?;
+            let distance = |cast: &Cast<FoundTriangle>| cast.pair.contact.distance;
+            let cast = first_that_counts(target_distance, cast, distance, counts)?;
             let time = cast.time as Real;
             let is_less = f64::from(time) < best;
             if is_less {
