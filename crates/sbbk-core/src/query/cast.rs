@@ -121,23 +121,24 @@ pub fn cast(
 }
 
 /// Returns the first impact that `counts`, among those at a target distance and at less and less. An impact at distance zero
-/// always counts. `cast` returns the impact at a target distance, and `distance` the distance of an impact.
+/// always counts. `cast` returns the impact at a target distance, after the last one. `distance` is that of an impact.
 pub fn first_that_counts<C>(
     target_distance: f32,
-    cast: impl Fn(f32) -> Option<C>,
+    cast: impl Fn(f32, Option<&C>) -> Option<C>,
     distance: impl Fn(&C) -> f64,
     counts: impl Fn(&C) -> bool,
 ) -> Option<C> {
-    let mut target = target_distance;
+    let (mut target, mut last) = (target_distance, None);
     for _ in 0..TARGETS {
-        let found = cast(target)?;
+        let found = cast(target, last.as_ref())?;
         if counts(&found) {
             return Some(found);
         }
         // Targets beyond the distance at the start have the same impact.
         target = NEXT_TARGET * target.min((distance(&found) as f32).max(0.0));
+        last = Some(found);
     }
-    cast(0.0)
+    cast(0.0, None)
 }
 
 impl CastOptions {
@@ -162,7 +163,7 @@ impl Cast {
         counts: impl Fn(&Self) -> bool,
     ) -> Option<Self> {
         let pair = TrianglePair::new(placement, corners1, corners2);
-        let cast = |target_distance: f32| {
+        let cast = |target_distance: f32, _: Option<&Self>| {
             let (options, target) =
                 (CastOptions { target_distance, ..*options }, f64::from(target_distance));
             if !boxes_meet(&pair, velocity, target, latest) {

@@ -63,9 +63,9 @@ impl ConvexSearch<'_> {
         let time = |node| time(node).max(plane.get().map_or(0.0, |of| time_along(of, node)));
         self.least(latest, time, |triangle, best| {
             let latest = latest.min(best);
-            let cast = |target_distance: Real| {
+            let cast = |target_distance: Real, last: Option<&Cast<_>>| {
                 let options = ShapeCastOptions { target_distance, ..options };
-                self.cast_triangle(triangle, of_triangle, options, latest)
+                self.cast_triangle(triangle, of_triangle, options, latest, last)
             };
             let counts = |cast: &Cast<FoundTriangle>| !may_slide || self.is_minimum(&cast.pair);
             let distance = |cast: &Cast<FoundTriangle>| cast.pair.contact.distance;
@@ -87,17 +87,24 @@ impl ConvexSearch<'_> {
         distance <= 0.0 || is_minimum(self.mesh.mesh, found.triangle, place, (direction, distance))
     }
 
-    /// The first impact of a triangle that moves in the frame of the shape.
+    /// The first impact of a triangle that moves in the frame of the shape. `last` is the impact at a greater target distance.
     fn cast_triangle(
         &self,
         triangle: u32,
         velocity: DVec3,
         options: ShapeCastOptions,
         latest: f64,
+        last: Option<&Cast<FoundTriangle>>,
     ) -> Option<Cast<FoundTriangle>> {
         let start = self.placed.in_part(self.mesh.corners(triangle));
         let (size, target) = (self.size(&start), f64::from(options.target_distance.max(0.0)));
         let cast = TriangleCast { search: self, triangle, start, size, velocity, target, latest };
+        if let Some(Cast { time, pair: FoundTriangle { contact, .. }, .. }) = last {
+            let (time, left, normal) = (*time, contact.distance - target, contact.normal);
+            if left > WITHIN_TARGET * size {
+                return cast.advance(Apart { time, left, normal });
+            }
+        }
         match cast.plane_at_start().filter(|apart| apart.left > WITHIN_TARGET * size) {
             Some(apart) => cast.advance(apart),
             None => cast.at_start(options.stop_at_penetration),
