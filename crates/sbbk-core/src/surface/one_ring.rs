@@ -122,6 +122,9 @@ impl<F: Facets> Around<F> {
         let mut slopes = Slopes::default();
         let rounding = ROUNDING * place.abs().max_element();
         self.visit_touching(triangle, place, CROWD, |_, corners, ends| {
+            if slopes.rise > most * most {
+                return;
+            }
             if !touches(corners, [DVec3::ZERO; 2], rounding) {
                 let point = PointSupport(distance * direction);
                 let nearest = convex_contact(corners, &point, f64::INFINITY);
@@ -136,10 +139,12 @@ impl<F: Facets> Around<F> {
                 ends.for_each(|end| slopes.add(end, direction));
                 // The steepest way may lead between the corners.
                 let uphill = direction.reject_from(area_vector(corners));
+                let rise = uphill.length_squared();
                 let way = longest_side(corners) * uphill.normalize_or_zero();
                 let is_inside = |[from, to]: [DVec3; 2]| from.distance(to) > 4.0 * rounding;
-                if clip(corners, [DVec3::ZERO, way], rounding).is_some_and(is_inside) {
-                    slopes.rise = slopes.rise.max(uphill.length_squared());
+                let leads_on = || clip(corners, [DVec3::ZERO, way], rounding);
+                if rise > most * most && leads_on().is_some_and(is_inside) {
+                    slopes.rise = slopes.rise.max(rise);
                 }
             }
         });
