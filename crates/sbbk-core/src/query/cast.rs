@@ -121,7 +121,8 @@ pub fn cast(
 }
 
 /// Returns the first impact that `counts`, among those at a target distance and at less and less. An impact at distance zero
-/// always counts. `cast` returns the impact at a target distance, after the last one. `distance` is that of an impact.
+/// always counts. `cast` returns the impact at a target distance, from the impact at the last one. `distance` returns the
+/// distance of an impact.
 pub fn first_that_counts<C>(
     target_distance: f32,
     cast: impl Fn(f32, Option<&C>) -> Option<C>,
