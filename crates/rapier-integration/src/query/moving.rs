@@ -69,20 +69,16 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         if !is_possible {
             return None;
         }
-        let (mut from, mut window) = (start, 0.0);
         let balls = self.search.mesh_place.swap(self.search.balls());
         let [first, end] = self.cast.meeting_of_balls(balls, &self.options)?;
+        if !self.cast.stop_at_penetration {
+            self.search.place(&self.cast.placement_at(start));
+            let contact = self.search.deepest(tolerance.max(SINK * self.thickness));
+            self.sunk = contact.map(|contact| -contact.contact.distance);
+        }
+        let (mut from, mut window) = (first, 0.0);
         loop {
             self.search.place(&self.cast.placement_at(from));
-            if from == start && !self.cast.stop_at_penetration {
-                let contact = self.search.deepest(tolerance.max(SINK * self.thickness));
-                self.sunk = contact.map(|contact| -contact.contact.distance);
-            }
-            // At the start, shapes near the mesh count as in contact.
-            if from < first {
-                from = first;
-                self.search.place(&self.cast.placement_at(from));
-            }
             let axis;
             (window, axis) = self.window(from, window)?;
             let until = (from + window).min(end);
@@ -299,8 +295,8 @@ struct MovingTriangle<'a> {
     moving: &'a MovingConvex<'a, 'a>,
     triangle: u32,
     corners: [DVec3; 3],
-    /// Levers of the triangle and of the shape.
-    levers: [f64; 2],
+    /// Greatest distance of a corner from the centre of the mesh's motion.
+    lever: f64,
     /// Bound on the acceleration of points against the other body, as they turn.
     acceleration: f64,
 }
@@ -312,11 +308,10 @@ impl<'a> MovingTriangle<'a> {
         let corners = search.mesh.corners(triangle).map(Vec3::as_dvec3);
         let centre = motions[0].local_center.as_dvec3();
         let farthest = corners.iter().map(|corner| corner.distance(centre)).fold(0.0, f64::max);
-        let [_, ball] = search.balls();
-        let levers = [farthest, lever(motions[1], &ball)];
+        let levers = [farthest, lever(motions[1], &search.balls()[1])];
         let turns = motions.map(|motion| motion.angvel.as_dvec3());
         let acceleration = (0..2).map(|i| turns[i].length() * turned(turns[i], levers[i])).sum();
-        Self { moving, triangle, corners, levers, acceleration }
+        Self { moving, triangle, corners, lever: farthest, acceleration }
     }
 
     /// Returns the time for which a plane `depth` below the triangle separates it from the shape. It is
@@ -342,7 +337,7 @@ impl<'a> MovingTriangle<'a> {
         let tolerance = self.moving.options.tolerance;
         let front = Front::new(self.moving, axis, from);
         let [a, b, c] = self.corners.map(|corner| front.in_mesh.dot(corner));
-        let by_speed = front.clear(a.min(b).min(c) + depth, self.levers[0]);
+        let by_speed = front.clear(a.min(b).min(c) + depth, self.lever);
         if from + by_speed > end {
             return f64::INFINITY;
         }
@@ -377,20 +372,15 @@ impl<'a> MovingTriangle<'a> {
         time - from
     }
 
+    /// Returns the distance from the greatest coordinate of the shape to the least one of the triangle, along an axis of space.
     fn gap(&self, axis: DVec3, time: f64) -> f64 {
-        let [lowest, highest] = self.heights(axis, time);
-        lowest - highest
-    }
-
-    /// Least coordinate of the triangle along an axis of space, and greatest of the shape.
-    fn heights(&self, axis: DVec3, time: f64) -> [f64; 2] {
         let MovingConvex { search, .. } = self.moving;
         let [mesh, shape] = self.moving.motions().map(|motion| place(motion, time));
         let in_mesh: DVec3 = mesh.rotation.transpose() * axis;
         let [a, b, c] = self.corners.map(|corner| in_mesh.dot(corner));
         let lowest = a.min(b).min(c) + axis.dot(mesh.translation);
         let in_shape: DVec3 = shape.rotation.transpose() * axis;
-        [lowest, search.height_along(in_shape) + axis.dot(shape.translation)]
+        lowest - (search.height_along(in_shape) + axis.dot(shape.translation))
     }
 }
 

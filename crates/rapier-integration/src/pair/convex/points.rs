@@ -71,8 +71,7 @@ pub(super) fn contact_points(
     if has_rim && let ConvexShape::Features { map, .. } = shape {
         rim_points(corners, map, on_shape, normal, polygon, equal_depth).for_each(&mut found);
     }
-    // Shapes other than cuboids may touch beside the corners of their features, which for a disc is a
-    // square: they need the closest points, too.
+    // A rim may touch beside the corners of its feature, which for a disc is a square.
     let is_cuboid = matches!(shape, ConvexShape::Cuboid(_));
     if is_own && (has_rim || !has_closest) {
         found(closest);
