@@ -8,8 +8,8 @@ use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::TriangleContact;
 use sbbk_core::query::{
-    Cast, CastOptions, FoundPair, MeshBodies, PartPair, SearchScratch, cast, deepest, meeting,
-    nearest,
+    Cast, CastOptions, FoundPair, MeshBodies, NEAR_TARGET, PartPair, SearchScratch, cast, deepest,
+    meeting, nearest,
 };
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
@@ -130,7 +130,10 @@ impl<'a> MeshQuery<'a> {
             target_distance: options.target_distance.max(0.0),
             stop_at_penetration: options.stop_at_penetration,
         };
-        let may_slide = !options.stop_at_penetration && options.target_distance > 0.0;
+        let is_near = |target: f32| self.nearest(NEAR_TARGET * f64::from(target)).is_some();
+        let may_slide = !options.stop_at_penetration
+            && options.target_distance > 0.0
+            && is_near(options.target_distance);
         let counts = |cast: &Cast| !may_slide || self.is_minimum(cast, velocity12);
         let cast = self.search(
             |trees, scratch| cast(trees, placement, velocity12, options, scratch, counts),

@@ -36,7 +36,7 @@ impl Query<'_> {
         let touching = match self {
             Self::Meshes(query) => query.touching(),
             Self::Convex(search) => {
-                search.touching().map(|triangle| search.mesh_place.swap([triangle, 0]))
+                search.first_within(0.0).map(|triangle| search.mesh_place.swap([triangle, 0]))
             }
         };
         let none = ShapeIntersection::new(false);

@@ -64,6 +64,10 @@ pub struct Cast<P = FoundPair> {
 /// rounding keeps them from being noticed before the steps are used up.
 const ARRIVED: f64 = 1.0e-12;
 
+/// Distance at the start, in target distances, up to which a body may slide along the other. From farther away, the first impact
+/// is where they are nearest. Higher: slower casts. Lower: rounding lets bodies that slide catch on edges within walls.
+pub const NEAR_TARGET: f64 = 1.001;
+
 /// Target distances that are tried before zero, and the ratio of each to the last one. More: more time beside walls. Fewer: impacts
 /// that begin to count below the target distance are late.
 const TARGETS: usize = 12;

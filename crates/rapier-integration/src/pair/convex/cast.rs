@@ -10,7 +10,7 @@ use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::query::{Cast, first_that_counts};
+use sbbk_core::query::{Cast, NEAR_TARGET, first_that_counts};
 use sbbk_core::surface::area_vector;
 
 use super::contact::{core_contact, core_support};
@@ -53,7 +53,10 @@ impl ConvexSearch<'_> {
         let around = self.aabb_in_mesh();
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
         let latest = f64::from(max_time_of_impact);
-        let may_slide = !options.stop_at_penetration && target > 0.0;
+        // From farther away, the first impact is where the mesh is nearest.
+        let may_slide = !options.stop_at_penetration
+            && target > 0.0
+            && self.first_within(NEAR_TARGET * f64::from(target)).is_some();
         let plane = Cell::new(None::<SupportPlane>);
         let time_along = |of: SupportPlane, node| {
             let approach = of.normal.dot(of_triangle);

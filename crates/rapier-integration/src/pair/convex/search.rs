@@ -130,20 +130,20 @@ impl<'a> ConvexSearch<'a> {
         self.shape.compute_aabb(&self.pose_in_mesh)
     }
 
-    /// Returns the first triangle found that touches or crosses the shape.
-    pub(crate) fn touching(&self) -> Option<u32> {
+    /// Returns the first triangle found that is within a distance of the shape, or crosses it.
+    pub(crate) fn first_within(&self, distance: f64) -> Option<u32> {
         let radius = f64::from(self.convex.radius());
-        let mut touching = None;
-        triangles_near(&self.placed, self.convex, &self.mesh, 0.0, (), |triangle| {
+        let (mut found, margin) = (None, (distance as Real).next_up());
+        triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
             let corners = self.placed.in_part(self.mesh.corners(triangle));
-            let reach = TOUCHING * self.size(&corners) + radius;
+            let reach = distance + TOUCHING * self.size(&corners) + radius;
             if core_touches(&self.placed, &corners, self.convex, &self.hull, reach) {
-                touching = Some(triangle);
+                found = Some(triangle);
                 return ControlFlow::Break(());
             }
             ControlFlow::Continue(())
         });
-        touching
+        found
     }
 
     /// Returns the deepest triangle or, if none crosses, the nearest within `limit`.
