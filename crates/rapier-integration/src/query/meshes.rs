@@ -1,15 +1,14 @@
 //! Two meshes.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
 
 use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
-use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::TriangleContact;
 use sbbk_core::query::{
-    Cast, CastOptions, FoundPair, MeshBodies, NEAR_TARGET, PartPair, SearchScratch, cast, deepest,
-    meeting, nearest,
+    Cast, CastOptions, FoundPair, MeshBodies, PartPair, SearchScratch, cast, deepest,
+    first_minimum, meeting, nearest,
 };
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
@@ -27,7 +26,7 @@ thread_local! {
 type Trees = [Arc<MeshData>; 2];
 
 fn search_trees<T>(
-    trees: Trees,
+    trees: &Trees,
     search: impl FnOnce((&Tree, &Tree), &mut SearchScratch) -> T,
 ) -> T {
     let [tree1, tree2] = trees.each_ref().map(|mesh| mesh.tree().expect("built"));
@@ -38,11 +37,12 @@ fn search_trees<T>(
 pub(crate) struct MeshQuery<'a> {
     meshes: [MeshView<'a>; 2],
     placement: Placement,
+    trees: OnceCell<Option<Trees>>,
 }
 
 impl<'a> MeshQuery<'a> {
     pub(crate) fn new(meshes: [MeshView<'a>; 2], pos12: &Pose) -> Self {
-        Self { meshes, placement: Placement::new(pos12) }
+        Self { meshes, placement: Placement::new(pos12), trees: OnceCell::new() }
     }
 
     /// Searches by trees, or by BVHs if a mesh has none.
@@ -51,7 +51,7 @@ impl<'a> MeshQuery<'a> {
         by_trees: impl FnOnce((&Tree, &Tree), &mut SearchScratch) -> T,
         by_bvhs: impl FnOnce(BvhSearch<'_>) -> T,
     ) -> T {
-        match self.trees() {
+        match self.trees.get_or_init(|| self.trees()) {
             Some(trees) => search_trees(trees, by_trees),
             None => {
                 self.meshes[0].store.earn_tree();
@@ -91,7 +91,7 @@ impl<'a> MeshQuery<'a> {
             |view: &MeshView<'_>| view.store.registered(view.mesh).filter(|_| self.use_trees());
         let [mesh1, mesh2] = self.meshes.each_ref().map(registered);
         let pair = if let (Some(tree1), Some(tree2)) = (mesh1, mesh2) {
-            search_trees([tree1, tree2], |trees, scratch| meeting(trees, self.placement, scratch))
+            search_trees(&[tree1, tree2], |trees, scratch| meeting(trees, self.placement, scratch))
         } else {
             self.bvhs().meeting()
         };
@@ -119,25 +119,18 @@ impl<'a> MeshQuery<'a> {
         Some(Found::of_pair(&pair, &placement))
     }
 
-    pub(super) fn cast(
-        &self,
-        velocity12: Vector,
-        options: ShapeCastOptions,
-    ) -> Option<ShapeCastHit> {
+    pub(super) fn cast(&self, velocity12: Vector, options: CastOptions) -> Option<ShapeCastHit> {
         let placement = self.placement;
-        let options = CastOptions {
-            max_time: options.max_time_of_impact,
-            target_distance: options.target_distance.max(0.0),
-            stop_at_penetration: options.stop_at_penetration,
-        };
-        let is_near = |target: f32| self.nearest(NEAR_TARGET * f64::from(target)).is_some();
-        let may_slide = !options.stop_at_penetration
-            && options.target_distance > 0.0
-            && is_near(options.target_distance);
-        let counts = |cast: &Cast| !may_slide || self.is_minimum(cast, velocity12);
-        let cast = self.search(
-            |trees, scratch| cast(trees, placement, velocity12, options, scratch, counts),
-            |bvhs| bvhs.cast(velocity12, options, counts),
+        let cast = first_minimum(
+            &options,
+            |counts| {
+                self.search(
+                    |trees, scratch| cast(trees, placement, velocity12, options, scratch, counts),
+                    |bvhs| bvhs.cast(velocity12, options, counts),
+                )
+            },
+            |cast| self.is_minimum(cast, velocity12),
+            |distance| self.nearest(distance).is_some(),
         )?;
         // The hit wants the point of mesh 2 before the motion.
         let mut pair = cast.pair;

@@ -18,7 +18,7 @@ use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{
     ClosestPoints, Contact, ShapeCastHit, ShapeCastStatus, ShapeDistance, ShapeIntersection,
 };
-use sbbk_core::query::{Cast, FoundPair, PartPair};
+use sbbk_core::query::{Cast, CastOptions, FoundPair, PartPair};
 use sbbk_core::traverse::Placement;
 
 use crate::pair::{ConvexSearch, FoundTriangle, MeshPlace, PlacedPart};
@@ -81,6 +81,11 @@ impl Query<'_> {
         velocity12: Vector,
         options: ShapeCastOptions,
     ) -> Option<ShapeCastHit> {
+        let options = CastOptions {
+            max_time: options.max_time_of_impact,
+            target_distance: options.target_distance.max(0.0),
+            stop_at_penetration: options.stop_at_penetration,
+        };
         match self {
             Self::Meshes(query) => query.cast(velocity12, options),
             Self::Convex(search) => {

@@ -64,9 +64,8 @@ pub struct Cast<P = FoundPair> {
 /// rounding keeps them from being noticed before the steps are used up.
 const ARRIVED: f64 = 1.0e-12;
 
-/// Distance at the start, in target distances, up to which a body may slide along the other. From farther away, the first impact
-/// is where they are nearest. Higher: slower casts. Lower: rounding lets bodies that slide catch on edges within walls.
-pub const NEAR_TARGET: f64 = 1.001;
+/// Distance at the start, in target distances, up to which a body may slide along the other. Higher: slower casts. Lower: rounding lets bodies that slide catch on edges within walls.
+const NEAR_TARGET: f64 = 1.001;
 
 /// Target distances that are tried before zero, and the ratio of each to the last one. More: more time beside walls. Fewer: impacts
 /// that begin to count below the target distance are late.
@@ -122,6 +121,24 @@ pub fn cast(
         }
     });
     first
+}
+
+/// Returns the first impact at a place where the bodies are nearest to each other. Bodies that slide within the target distance come
+/// to other parts of a wall all the time. From farther away, the first impact always is at such a place. `first_impact` finds the
+/// first one that counts. `are_within` tells if the bodies are within a distance at the start.
+pub fn first_minimum<C>(
+    options: &CastOptions,
+    first_impact: impl Fn(&dyn Fn(&C) -> bool) -> Option<C>,
+    is_minimum: impl Fn(&C) -> bool,
+    are_within: impl Fn(f64) -> bool,
+) -> Option<C> {
+    let first = first_impact(&|_| true)?;
+    let CastOptions { target_distance: target, stop_at_penetration, .. } = *options;
+    let may_slide = !stop_at_penetration
+        && target > 0.0
+        && !is_minimum(&first)
+        && are_within(NEAR_TARGET * f64::from(target));
+    if may_slide { first_impact(&is_minimum) } else { Some(first) }
 }
 
 /// Returns the first impact that `counts`, among those at a target distance and at less and less. An impact at distance zero

@@ -37,7 +37,7 @@ mod triangles;
 pub use advance::{
     Advance, AdvanceOptions, Bodies, MeshBodies, PartPair, advance, advance_from_contact,
 };
-pub use cast::{Cast, CastOptions, NEAR_TARGET, cast, first_that_counts};
+pub use cast::{Cast, CastOptions, cast, first_minimum, first_that_counts};
 pub use contacts::{contacts, meeting};
 pub use nearest::{deepest, nearest};
 pub use seek::{SearchScratch, best_first};

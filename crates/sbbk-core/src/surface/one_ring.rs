@@ -122,9 +122,6 @@ impl<F: Facets> Around<F> {
         let mut slopes = Slopes::default();
         let rounding = ROUNDING * place.abs().max_element();
         self.visit_touching(triangle, place, CROWD, |_, corners, ends| {
-            if slopes.rise > most * most {
-                return;
-            }
             if !touches(corners, [DVec3::ZERO; 2], rounding) {
                 let point = PointSupport(distance * direction);
                 let nearest = convex_contact(corners, &point, f64::INFINITY);
@@ -146,6 +143,11 @@ impl<F: Facets> Around<F> {
                 if rise > most * most && leads_on().is_some_and(is_inside) {
                     slopes.rise = slopes.rise.max(rise);
                 }
+            }
+            if slopes.rise > most * most {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             }
         });
         slopes.rise > most * most
@@ -192,6 +194,7 @@ impl<F: Facets> Around<F> {
                 let is_double = own.iter().all(|corner| corners.contains(corner));
                 ends &= other == side / 3 || is_double;
                 count += 1;
+                ControlFlow::Continue(())
             });
             ends
         };
@@ -345,14 +348,14 @@ impl<F: Facets> Around<F> {
             self.visit_touching(triangle, place, usize::MAX, |other, corners, ends| {
                 let outward = self.outward_of(other);
                 // Walls within are no surface.
-                if outward == 0.0 {
-                    return;
+                if outward != 0.0 {
+                    let ends: ArrayVec<DVec3, 3> = ends.collect();
+                    ends.iter().for_each(|end| slopes.add(*end, direction));
+                    let angle = if let [u, v] = ends[..] { angle(u, v) } else { PI };
+                    all.add(outward * area_vector(corners), angle, direction);
+                    count += 1;
                 }
-                let ends: ArrayVec<DVec3, 3> = ends.collect();
-                ends.iter().for_each(|end| slopes.add(*end, direction));
-                let angle = if let [u, v] = ends[..] { angle(u, v) } else { PI };
-                all.add(outward * area_vector(corners), angle, direction);
-                count += 1;
+                ControlFlow::Continue(())
             });
             height = if is_closed { height } else { all.sum() };
         }
@@ -380,7 +383,8 @@ impl<F: Facets> Around<F> {
         if bend.is_exceeded(rise, most) && !self.facets.is_whole(triangle, feature) {
             let place = self.place(triangle, feature, place);
             self.visit_touching(triangle, place, usize::MAX, |other, _, ends| {
-                ends.filter(|_| self.outward_of(other) != 0.0).for_each(|end| bend.add(end))
+                ends.filter(|_| self.outward_of(other) != 0.0).for_each(|end| bend.add(end));
+                ControlFlow::Continue(())
             });
         }
         bend.is_exceeded(rise, most)
@@ -397,24 +401,25 @@ impl<F: Facets> Around<F> {
     }
 
     /// Calls `visit` for each triangle that touches a place. `visit` also gets the three corners, seen from the place, and
-    /// the corners that are not at the place. Ends after `most` triangles near the place.
+    /// the corners that are not at the place. Ends after `most` triangles near the place, or if `visit` breaks.
     fn visit_touching(
         &self,
         triangle: u32,
         place: DVec3,
         mut most: usize,
-        mut visit: impl FnMut(u32, &[DVec3; 3], &mut dyn Iterator<Item = DVec3>),
+        mut visit: impl FnMut(u32, &[DVec3; 3], &mut dyn Iterator<Item = DVec3>) -> ControlFlow<()>,
     ) {
         let seam = seam(&each(|i| self.corner(3 * triangle, i)));
+        // Facets may go on after a break.
+        let mut ended = ControlFlow::Continue(());
         self.facets.near([place - seam, place + seam], &mut |other| {
             let corners = each(|i| self.corner(3 * other, i) - place);
-            if touches(&corners, [DVec3::ZERO; 2], seam) {
+            if ended.is_continue() && touches(&corners, [DVec3::ZERO; 2], seam) {
                 let is_far = |corner: &DVec3| corner.length_squared() > seam * seam;
-                visit(other, &corners, &mut corners.into_iter().filter(is_far));
+                ended = visit(other, &corners, &mut corners.into_iter().filter(is_far));
             }
-            // Facets may go on after a break.
             most = most.saturating_sub(1);
-            if most == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if most == 0 { ControlFlow::Break(()) } else { ended }
         });
     }
 

@@ -8,9 +8,8 @@ use std::cell::Cell;
 
 use glamx::DVec3;
 use parry3d::math::Real;
-use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::query::{Cast, NEAR_TARGET, first_that_counts};
+use sbbk_core::query::{Cast, CastOptions, first_minimum, first_that_counts};
 use sbbk_core::surface::area_vector;
 
 use super::contact::{core_contact, core_support};
@@ -36,27 +35,38 @@ impl ConvexSearch<'_> {
     pub(crate) fn cast(
         &self,
         velocity12: DVec3,
-        options: ShapeCastOptions,
+        options: CastOptions,
     ) -> Option<Cast<FoundTriangle>> {
-        let ShapeCastOptions { max_time_of_impact, target_distance, .. } = options;
-        let target = target_distance.max(0.0);
-        let is_possible = max_time_of_impact >= 0.0 && target.is_finite();
-        if !is_possible || !velocity12.is_finite() || !self.placed.placement.is_finite() {
+        let is_finite = velocity12.is_finite() && self.placed.placement.is_finite();
+        if !options.is_possible() || !is_finite {
             return None;
         }
-        // Velocities of a triangle in the frame of the shape, and of the shape in the frame of the mesh.
         let placement = &self.placed.placement;
         let (of_triangle, of_shape) = match self.mesh_place {
             MeshPlace::First => (-(placement.rotation * velocity12), velocity12),
             MeshPlace::Second => (velocity12, -(placement.inverse * velocity12)),
         };
+        let velocities = [of_triangle, of_shape];
+        first_minimum(
+            &options,
+            |counts| self.first_impact(velocities, options, counts),
+            |cast| self.is_minimum(cast),
+            |distance| self.first_within(distance).is_some(),
+        )
+    }
+
+    /// Returns the first impact that `counts`. Velocities are those of a triangle in the frame of the shape, and of the shape in
+    /// the frame of the mesh.
+    fn first_impact(
+        &self,
+        [of_triangle, of_shape]: [DVec3; 2],
+        options: CastOptions,
+        counts: impl Fn(&Cast<FoundTriangle>) -> bool,
+    ) -> Option<Cast<FoundTriangle>> {
+        let CastOptions { max_time, target_distance: target, .. } = options;
         let around = self.aabb_in_mesh();
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
-        let latest = f64::from(max_time_of_impact);
-        // From farther away, the first impact is where the mesh is nearest.
-        let may_slide = !options.stop_at_penetration
-            && target > 0.0
-            && self.first_within(NEAR_TARGET * f64::from(target)).is_some();
+        let latest = f64::from(max_time);
         let plane = Cell::new(None::<SupportPlane>);
         let time_along = |of: SupportPlane, node| {
             let approach = of.normal.dot(of_triangle);
@@ -67,12 +77,11 @@ impl ConvexSearch<'_> {
         self.least(latest, time, |triangle, best| {
             let latest = latest.min(best);
             let cast = |target_distance: Real, last: Option<&Cast<_>>| {
-                let options = ShapeCastOptions { target_distance, ..options };
+                let options = CastOptions { target_distance, ..options };
                 self.cast_triangle(triangle, of_triangle, options, latest, last)
             };
-            let counts = |cast: &Cast<FoundTriangle>| !may_slide || self.is_minimum(&cast.pair);
             let distance = |cast: &Cast<FoundTriangle>| cast.pair.contact.distance;
-            let cast = first_that_counts(target_distance, cast, distance, counts)?;
+            let cast = first_that_counts(target, cast, distance, &counts)?;
             let time = cast.time as Real;
             let is_less = f64::from(time) < best;
             if is_less {
@@ -83,7 +92,7 @@ impl ConvexSearch<'_> {
     }
 
     /// Returns false if the mesh is nearer to the shape beside the point of an impact.
-    fn is_minimum(&self, found: &FoundTriangle) -> bool {
+    fn is_minimum(&self, Cast { pair: found, .. }: &Cast<FoundTriangle>) -> bool {
         let [place, _] = found.points(&self.placed).map(|point| point.as_dvec3());
         let [direction, _] = self.placed.directions(found.contact.normal);
         let distance = found.contact.distance;
@@ -95,12 +104,12 @@ impl ConvexSearch<'_> {
         &self,
         triangle: u32,
         velocity: DVec3,
-        options: ShapeCastOptions,
+        options: CastOptions,
         latest: f64,
         last: Option<&Cast<FoundTriangle>>,
     ) -> Option<Cast<FoundTriangle>> {
         let start = self.placed.in_part(self.mesh.corners(triangle));
-        let (size, target) = (self.size(&start), f64::from(options.target_distance.max(0.0)));
+        let (size, target) = (self.size(&start), f64::from(options.target_distance));
         let cast = TriangleCast { search: self, triangle, start, size, velocity, target, latest };
         if let Some(Cast { time, pair: FoundTriangle { contact, .. }, .. }) = last {
             let (time, left, normal) = (*time, contact.distance - target, contact.normal);

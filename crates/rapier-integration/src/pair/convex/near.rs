@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use glamx::{DVec3, Vec3};
+use glamx::{BVec3, DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::shape::HalfSpace;
@@ -123,28 +123,26 @@ pub(super) fn time_of(
     // Allows for the rounding of poses and boxes, and so of the velocity's direction.
     let speed = velocity.length() * f64::from(1.0 + gamma(8));
     let lost = f64::from(gamma(8)) * speed;
-    let speeds = velocity.abs();
+    let (speeds, signs) = (velocity.abs(), velocity.signum());
     let (per_fast, per_slow) = ((speeds + lost).recip(), (speeds - lost).recip());
-    move |node| {
+    let is_slow = BVec3::from(speeds.cmple(DVec3::splat(lost)));
+    let per_speed = speed.recip();
+    // Earliest and latest time at which the boxes overlap, grown by the target.
+    let overlap = move |node: TestedBox| {
         let (centre, extent) = node.centre_extent();
-        let apart = f64::from(gap(node)) - f64::from(target);
-        let (mut start, mut end) = ((apart / speed).max(0.0), f64::INFINITY);
-        if !is_infinite {
-            let offset = (centre - around.center()).as_dvec3();
-            let reach = (extent + around.half_extents()).as_dvec3() + slack;
-            for axis in 0..3 {
-                let ahead = offset[axis] * velocity[axis].signum();
-                if speeds[axis] > lost {
-                    start = start.max((ahead - reach[axis]) * per_fast[axis]);
-                    end = end.min((ahead + reach[axis]) * per_slow[axis]);
-                } else {
-                    start = start.max((ahead.abs() - reach[axis]) * per_fast[axis]);
-                }
-            }
-        }
+        let offset = (centre - around.center()).as_dvec3();
+        let reach = (extent + around.half_extents()).as_dvec3() + slack;
+        let ahead = DVec3::select(is_slow, offset.abs(), offset * signs);
+        let last = DVec3::select(is_slow, DVec3::INFINITY, (ahead + reach) * per_slow);
+        (((ahead - reach) * per_fast).max_element().max(0.0), last.min_element())
+    };
+    move |node| {
+        let (start, end) = if is_infinite { (0.0, f64::INFINITY) } else { overlap(node) };
+        let time = || start.max((f64::from(gap(node)) - f64::from(target)) * per_speed);
         // False for NaN, as of a velocity of zero.
-        let is_time = start <= end && start < f64::from(Real::MAX);
-        if is_time { (start as Real).next_down().max(0.0) } else { Real::MAX }
+        let is_time = |time: f64| time <= end && time < f64::from(Real::MAX);
+        let time = if is_time(start) { time() } else { f64::INFINITY };
+        if is_time(time) { (time as Real).next_down().max(0.0) } else { Real::MAX }
     }
 }
 
