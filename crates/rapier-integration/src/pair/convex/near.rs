@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use glamx::{BVec3, DVec3, Vec3};
+use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::shape::HalfSpace;
@@ -125,7 +125,7 @@ pub(super) fn time_of(
     let lost = f64::from(gamma(8)) * speed;
     let (speeds, signs) = (velocity.abs(), velocity.signum());
     let (per_fast, per_slow) = ((speeds + lost).recip(), (speeds - lost).recip());
-    let is_slow = BVec3::from(speeds.cmple(DVec3::splat(lost)));
+    let is_slow = speeds.cmple(DVec3::splat(lost));
     let per_speed = speed.recip();
     // Earliest and latest time at which the boxes overlap, grown by the target.
     let overlap = move |node: TestedBox| {
