@@ -55,8 +55,8 @@ impl ConvexSearch<'_> {
         )
     }
 
-    /// Returns the first impact that `counts`. Velocities are those of a triangle in the frame of the shape, and of the shape in
-    /// the frame of the mesh.
+    /// Returns the first impact that `counts`. The first velocity is that of the mesh in the frame of the shape. The second is that of
+    /// the shape in the frame of the mesh.
     fn first_impact(
         &self,
         [of_triangle, of_shape]: [DVec3; 2],
