@@ -55,8 +55,7 @@ impl ConvexSearch<'_> {
         )
     }
 
-    /// Returns the first impact that `counts`. The first velocity is that of the mesh in the frame of the shape. The second is that of
-    /// the shape in the frame of the mesh.
+    /// Returns the first impact that `counts`. Each velocity is in the frame of the other body.
     fn first_impact(
         &self,
         [of_triangle, of_shape]: [DVec3; 2],
