@@ -3,11 +3,13 @@ use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
 
 use arrayvec::ArrayVec;
 use parry3d::shape::TriMesh;
-use sbbk_core::surface::{Surface, SurfaceKind, kind};
+use sbbk_core::surface::{Surface, SurfaceKind, is_surely_open, kind};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
 use super::flags::TriangleFlags;
-use super::neighbours::MeshRays;
+use super::neighbours::{MeshRays, Neighbours};
+use super::store::is_analysed;
+use super::view::MeshView;
 
 /// Tree and surface of a mesh, for all colliders with equal geometry. A thread computes a part when the
 /// thread needs that part. Two threads may compute one tree or surface at once, and neither waits. Kind
@@ -16,7 +18,11 @@ use super::neighbours::MeshRays;
 pub(crate) struct MeshData {
     /// Surface of an analysed mesh, and flags of its triangles.
     analysed: OnceLock<(Surface, Box<[TriangleFlags]>)>,
-    /// Kind of a mesh that is too large to analyse as a whole.
+    /// Neighbours of triangles of a mesh that is not analysed as a whole.
+    neighbours: OnceLock<Neighbours>,
+    /// True if the mesh needs no analysis as a whole.
+    is_local: OnceLock<bool>,
+    /// Kind of a mesh that is not analysed as a whole.
     kind: OnceLock<SurfaceKind>,
     tree: OnceLock<Tree>,
     has_build_begun: AtomicBool,
@@ -58,6 +64,28 @@ impl MeshData {
         self.has_build_begun.store(true, Ordering::Relaxed);
         let tree = Tree::build(mesh.vertices(), mesh.indices(), options)?;
         Ok(self.tree.set(tree).is_ok())
+    }
+
+    /// Returns true if triangles are analysed where something touches. This holds for large meshes, and for surely open ones.
+    pub(super) fn is_local(&self, view: &MeshView<'_>) -> bool {
+        /// Meshes up to this size are analysed as a whole. Higher: bodies come onto new terrains later. Lower: the search for a
+        /// border takes longer.
+        const LEAST: usize = 512;
+        let count = view.mesh.indices().len();
+        let is_open =
+            || count > LEAST && view.has_bare_edge() && is_surely_open(&MeshRays(view.mesh));
+        let is_local = || {
+            if is_analysed(count) && is_open() {
+                let _ = self.kind.set(SurfaceKind::Sheet);
+            }
+            !is_analysed(count) || self.kind.get().is_some()
+        };
+        self.analysed.get().is_none() && *self.is_local.get_or_init(is_local)
+    }
+
+    /// Returns the neighbours of triangles of `mesh`, whose data this must be.
+    pub(super) fn neighbours(&self, mesh: &TriMesh) -> &Neighbours {
+        self.neighbours.get_or_init(|| Neighbours::new(mesh.indices().len()))
     }
 
     pub(super) fn surface(&self) -> Option<&Surface> {
@@ -107,6 +135,7 @@ impl MeshData {
         let tree = self.tree().map_or(0, |tree| tree.stats().bytes);
         let surface = self.surface().map_or(0, |surface| surface.bytes() - size_of::<Surface>());
         let flags = size_of_val(self.flags());
-        size_of::<Self>() + tree + surface + flags + ENTRIES + REFERENCE_COUNTS
+        let neighbours = self.neighbours.get().map_or(0, Neighbours::bytes);
+        size_of::<Self>() + tree + surface + flags + neighbours + ENTRIES + REFERENCE_COUNTS
     }
 }

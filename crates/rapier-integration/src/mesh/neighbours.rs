@@ -1,12 +1,13 @@
 use std::ops::ControlFlow;
-use std::sync::{Mutex, PoisonError};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
 use glamx::DVec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::TriMesh;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
@@ -48,23 +49,22 @@ impl<'a> Twins<'a> {
 const ALONE: Real = 2.0e-4;
 
 impl MeshFacets<'_> {
-    /// Reads or changes the flags of a triangle.
-    fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&TriangleFlags) -> T) -> T {
+    fn flags(&self, triangle: u32) -> &TriangleFlags {
         match self.twins {
-            Twins::All(_, flags) => then(&flags[triangle as usize]),
-            Twins::Near(known) => known.with(self.mesh, triangle, |one| then(&one.flags)),
+            Twins::All(_, flags) => &flags[triangle as usize],
+            Twins::Near(known) => &known.of(self.mesh, triangle).flags,
         }
     }
 
     /// Returns what is on either side of a triangle of a closed mesh. Takes two rays the first time.
     pub(crate) fn side(self, triangle: u32) -> Side {
-        self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
+        self.flags(triangle).side().unwrap_or_else(|| {
             let first = self.first_of_crowd(triangle).filter(|&first| first != triangle);
             let is_face = first.is_some_and(|first| self.side(first) == Side::Outer);
             let rays = MeshRays(self.mesh);
             let found = || side(&rays, self.twins.surface(), triangle, self.memo);
             let side = if is_face { Side::Outer } else { found() };
-            self.with_flags(triangle, |flags| flags.set_side(side));
+            self.flags(triangle).set_side(side);
             side
         })
     }
@@ -90,26 +90,16 @@ impl MeshFacets<'_> {
     pub(crate) fn is_double(self, triangle: u32) -> bool {
         match self.twins {
             Twins::All(surface, _) => surface.is_double(triangle),
-            Twins::Near(known) => known.with(self.mesh, triangle, |one| one.is_double),
+            Twins::Near(known) => known.of(self.mesh, triangle).is_double(),
         }
     }
 
     /// Returns true if a triangle has a double that is wound the other way.
     pub(crate) fn is_two_sided(self, triangle: u32) -> bool {
-        if let Twins::All(surface, _) = self.twins
-            && !surface.has_doubles()
-        {
-            return false;
+        match self.twins {
+            Twins::All(surface, _) => surface.has_doubles() && is_two_sided(self.mesh, triangle),
+            Twins::Near(known) => known.of(self.mesh, triangle).is_two_sided(),
         }
-        let rays = MeshRays(self.mesh);
-        let [a, b, c] = rays.corners(triangle);
-        let backs = [[a, c, b], [c, b, a], [b, a, c]];
-        let mut is_two_sided = false;
-        rays.near(triangle, 0.0, &mut |other| {
-            is_two_sided = backs.contains(&rays.corners(other));
-            if is_two_sided { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
-        is_two_sided
     }
 
     /// Returns the first triangle of a crowd or a small component. If that triangle is a face, so are all.
@@ -153,17 +143,17 @@ impl MeshFacets<'_> {
             // Once for all triangles of a fan.
             for half_edge in surface.ring(triangle, feature).0 {
                 let vertex = Feature::Vertex((half_edge % 3) as u8);
-                self.with_flags(half_edge / 3, |flags| flags.set(vertex, found));
+                self.flags(half_edge / 3).set(vertex, found);
             }
         } else {
-            self.with_flags(triangle, |flags| flags.set(feature, found));
+            self.flags(triangle).set(feature, found);
         }
     }
 
     #[cold]
     fn find_cones(self, triangle: u32) -> MinimumCones {
         let cones = minimum_cones(&self, triangle);
-        self.with_flags(triangle, |flags| flags.set_cones(cones));
+        self.flags(triangle).set_cones(cones);
         cones
     }
 }
@@ -173,9 +163,7 @@ impl Facets for MeshFacets<'_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self.twins {
             Twins::All(surface, _) => surface.twin(half_edge),
-            Twins::Near(known) => {
-                known.with(self.mesh, half_edge / 3, |one| one.twins[half_edge as usize % 3])
-            }
+            Twins::Near(known) => known.of(self.mesh, half_edge / 3).twin(half_edge % 3),
         }
     }
 
@@ -187,9 +175,9 @@ impl Facets for MeshFacets<'_> {
 
     #[inline]
     fn is_whole(&self, triangle: u32, feature: Feature) -> bool {
-        self.with_flags(triangle, |flags| flags.is_whole(feature)).unwrap_or_else(|| {
+        self.flags(triangle).is_whole(feature).unwrap_or_else(|| {
             self.find_strays(triangle, feature);
-            self.with_flags(triangle, |flags| flags.is_whole(feature)) != Some(false)
+            self.flags(triangle).is_whole(feature) != Some(false)
         })
     }
 
@@ -208,7 +196,7 @@ impl Facets for MeshFacets<'_> {
         self.declared_side(triangle).outward().unwrap_or(0.0)
     }
 
-    /// Meshes that are not analysed as a whole have none, as each needs a search for neighbours.
+    /// Triangles whose neighbours are not all known have none, as these take a search each.
     #[inline]
     fn cones(&self, triangle: u32) -> MinimumCones {
         let Twins::All(_, flags) = self.twins else { return MinimumCones::ALL };
@@ -268,54 +256,98 @@ impl RayTriangles for MeshRays<'_> {
 const RAY_ROUNDING: f64 = 1.0e-12;
 
 /// The twins of the edges of a triangle, and its flags.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 struct Neighbour {
-    twins: [Option<u32>; 3],
-    /// See [`Surface::is_double`].
-    is_double: bool,
+    /// 0 before the search, 1 for none, else 2 more than the twin. The highest bits tell if the triangle is a double, and if it
+    /// has a double that is wound the other way.
+    twins: [AtomicU32; 3],
     flags: TriangleFlags,
 }
 
 impl Neighbour {
-    /// Finds the neighbours of a triangle. Vertices at one place are one vertex, and doubles have no neighbours, as in
-    /// [`Surface`].
-    fn new(mesh: &TriMesh, triangle: u32) -> Self {
-        let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
-        let own = corners(triangle);
-        let shares_edge = |other: &u32| {
-            let theirs = corners(*other);
-            own.into_iter().filter(|corner| theirs.contains(corner)).count() > 1
-        };
-        let bounds = mesh.triangle(triangle).local_aabb();
-        let near = mesh.bvh().intersect_aabb(&bounds);
-        let mut near: Vec<u32> = near.filter(shares_edge).collect();
-        near.sort_unstable();
-        let mut known = FxHashSet::default();
-        near.retain(|&other| {
-            sliver(mesh, other) != Some(true) && known.insert(places(corners(other)))
-        });
-        let is_double = !near.contains(&triangle) || sliver(mesh, triangle).is_some();
-        if !near.contains(&triangle) {
-            return Self { is_double, ..Self::default() };
+    const HIGHEST: u32 = 1 << 31;
+
+    fn is_known(&self) -> bool {
+        // Makes the other twins visible, see `find`.
+        self.twins[0].load(Ordering::Acquire) != 0
+    }
+
+    fn twin(&self, edge: u32) -> Option<u32> {
+        let twin = self.twins[edge as usize].load(Ordering::Relaxed);
+        (twin & !Self::HIGHEST).checked_sub(2)
+    }
+
+    fn has_highest(&self, edge: usize) -> bool {
+        self.twins[edge].load(Ordering::Relaxed) & Self::HIGHEST != 0
+    }
+
+    fn is_double(&self) -> bool {
+        self.has_highest(0)
+    }
+
+    fn is_two_sided(&self) -> bool {
+        self.has_highest(1)
+    }
+
+    /// Finds the neighbours of a triangle in about 1 µs. Other threads may find the same ones meanwhile.
+    #[cold]
+    fn find(&self, mesh: &TriMesh, triangle: u32) {
+        let (twins, is_double) = twins(mesh, triangle);
+        let highest = [is_double, is_two_sided(mesh, triangle), false];
+        for edge in [2, 1, 0] {
+            let twin = twins[edge].map_or(1, |twin| twin + 2);
+            let highest = if highest[edge] { Self::HIGHEST } else { 0 };
+            self.twins[edge].store(twin | highest, Ordering::Release);
         }
-        let (mut forward, mut backward, mut twins) = ([0; 3], [0; 3], [None; 3]);
-        for other in near {
-            let theirs = corners(other);
-            for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
-                let [a, b] = [own[i], own[(i + 1) % 3]];
-                let [c, d] = [theirs[j], theirs[(j + 1) % 3]];
-                if a == d && b == c {
-                    backward[i] += 1;
-                    twins[i] = Some(3 * other + j as u32);
-                } else if a == c && b == d {
-                    forward[i] += 1;
-                }
+    }
+}
+
+/// Returns true if a triangle has a double that is wound the other way.
+fn is_two_sided(mesh: &TriMesh, triangle: u32) -> bool {
+    let rays = MeshRays(mesh);
+    let [a, b, c] = rays.corners(triangle);
+    let backs = [[a, c, b], [c, b, a], [b, a, c]];
+    let mut is_two_sided = false;
+    rays.near(triangle, 0.0, &mut |other| {
+        is_two_sided = backs.contains(&rays.corners(other));
+        if is_two_sided { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    is_two_sided
+}
+
+/// Returns the twins of the edges of a triangle, and whether it is a double. Vertices at one place are one vertex, and doubles
+/// have no neighbours, as in [`Surface`].
+fn twins(mesh: &TriMesh, triangle: u32) -> ([Option<u32>; 3], bool) {
+    let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
+    let own = corners(triangle);
+    let shares_edge = |other: &u32| {
+        let theirs = corners(*other);
+        own.into_iter().filter(|corner| theirs.contains(corner)).count() > 1
+    };
+    let bounds = mesh.triangle(triangle).local_aabb();
+    let near = mesh.bvh().intersect_aabb(&bounds);
+    let mut near: Vec<u32> = near.filter(shares_edge).collect();
+    near.sort_unstable();
+    let mut known = FxHashSet::default();
+    near.retain(|&other| sliver(mesh, other) != Some(true) && known.insert(places(corners(other))));
+    let is_first = near.contains(&triangle);
+    let (mut forward, mut backward, mut twins) = ([0; 3], [0; 3], [None; 3]);
+    for other in near {
+        let theirs = corners(other);
+        for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
+            let [a, b] = [own[i], own[(i + 1) % 3]];
+            let [c, d] = [theirs[j], theirs[(j + 1) % 3]];
+            if a == d && b == c {
+                backward[i] += 1;
+                twins[i] = Some(3 * other + j as u32);
+            } else if a == c && b == d {
+                forward[i] += 1;
             }
         }
-        let twins =
-            std::array::from_fn(|i| twins[i].filter(|_| forward[i] == 1 && backward[i] == 1));
-        Self { twins, is_double, ..Self::default() }
     }
+    let is_paired = |i: usize| is_first && forward[i] == 1 && backward[i] == 1;
+    let is_double = !is_first || sliver(mesh, triangle).is_some();
+    (std::array::from_fn(|i| twins[i].filter(|_| is_paired(i))), is_double)
 }
 
 /// Returns whether a sliver [hangs](hangs()). `None` for other triangles.
@@ -345,33 +377,44 @@ fn places(corners: [Vector; 3]) -> [Place; 3] {
     places
 }
 
-/// Neighbours of the triangles that a pair has touched, for a mesh that is too large to analyse as a whole.
-#[derive(Debug, Default)]
-pub(crate) struct Neighbours(Mutex<FxHashMap<u32, Neighbour>>);
-
-impl Neighbours {
-    /// Triangles whose neighbours a pair keeps. Higher: more memory for a body that crosses a large
-    /// mesh; lower: bodies that touch many triangles search for the same neighbours again.
-    const MOST: usize = 4096;
-
-    /// Forgets all neighbours if there are too many.
-    pub(super) fn limit(&mut self) {
-        let known = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
-        if known.len() > Self::MOST {
-            known.clear();
-        }
-    }
-
-    /// Calls `then` with the neighbours of a triangle, which the BVH finds in about 1 µs.
-    fn with<T>(&self, mesh: &TriMesh, triangle: u32, then: impl FnOnce(&Neighbour) -> T) -> T {
-        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        then(known.entry(triangle).or_insert_with(|| Neighbour::new(mesh, triangle)))
-    }
+/// Neighbours of triangles, found where something touches the mesh. Threads share them, and take no lock.
+#[derive(Debug)]
+pub(crate) struct Neighbours {
+    chunks: Box<[OnceLock<Box<Chunk>>]>,
+    chunk_count: AtomicUsize,
 }
 
-impl Clone for Neighbours {
-    fn clone(&self) -> Self {
-        Self(Mutex::new(self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()))
+/// Triangles whose memory is reserved at once. Higher: more memory where few triangles are touched. Lower: a larger table.
+const CHUNK: usize = 64;
+
+type Chunk = [Neighbour; CHUNK];
+
+impl Neighbours {
+    /// Reserves a table for `count` triangles.
+    pub(super) fn new(count: usize) -> Self {
+        let chunks = (0..count.div_ceil(CHUNK)).map(|_| OnceLock::new()).collect();
+        Self { chunks, chunk_count: AtomicUsize::new(0) }
+    }
+
+    /// Returns the neighbours of a triangle.
+    #[inline]
+    fn of(&self, mesh: &TriMesh, triangle: u32) -> &Neighbour {
+        let triangle_in = triangle as usize % CHUNK;
+        let chunk = self.chunks[triangle as usize / CHUNK].get_or_init(|| {
+            self.chunk_count.fetch_add(1, Ordering::Relaxed);
+            Box::new(std::array::from_fn(|_| Neighbour::default()))
+        });
+        let neighbour = &chunk[triangle_in];
+        if !neighbour.is_known() {
+            neighbour.find(mesh, triangle);
+        }
+        neighbour
+    }
+
+    /// Memory in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let chunks = self.chunk_count.load(Ordering::Relaxed) * size_of::<Chunk>();
+        size_of_val(&*self.chunks) + chunks
     }
 }
 
@@ -382,7 +425,7 @@ const IMPACT_RISE: f64 = 1.0e-4;
 /// Returns true if no triangle at the place of an impact leads towards the other body. `other` has the unit direction to that body,
 /// and its distance.
 pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, other: (DVec3, f64)) -> bool {
-    let (known, memo) = Default::default();
+    let (known, memo) = (Neighbours::new(0), PlaceMemo::default());
     let twins = Twins::Near(&known);
     let facets = MeshFacets { mesh, twins, memo: &memo, declared: Some(Side::Sheet) };
     !Around { facets, side: Side::Sheet }.rises(triangle, place, other, IMPACT_RISE)
@@ -416,7 +459,7 @@ mod tests {
             let triangles = (0..1 + round % 20).map(|_| [corner(), corner(), corner()]).collect();
             let mesh = TriMesh::new(vertices, triangles).expect("there are triangles");
             let whole = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
-            let known = Neighbours::default();
+            let known = Neighbours::new(mesh.indices().len());
             let (twins, memo) = (Twins::Near(&known), &PlaceMemo::default());
             let facets = MeshFacets { mesh: &mesh, twins, memo, declared: None };
             for half_edge in 0..3 * mesh.indices().len() as u32 {
@@ -471,15 +514,5 @@ mod tests {
             }
         }
         assert!(counts[0] > 100 && counts[2] > 100, "{counts:?}");
-    }
-
-    #[test]
-    fn neighbours_are_forgotten_beyond_the_limit() {
-        for (count, kept) in [(Neighbours::MOST, Neighbours::MOST), (Neighbours::MOST + 1, 0)] {
-            let all = (0..count as u32).map(|triangle| (triangle, Neighbour::default()));
-            let mut known = Neighbours(Mutex::new(all.collect()));
-            known.limit();
-            assert_eq!(known.0.into_inner().unwrap().len(), kept);
-        }
     }
 }

@@ -7,8 +7,8 @@ use sbbk_core::tree::Tree;
 
 use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
-use super::neighbours::{MeshFacets, Neighbours, Twins};
-use super::store::{is_analysed, is_small};
+use super::neighbours::{MeshFacets, Twins};
+use super::store::is_small;
 use super::view::{MeshView, nearest};
 
 /// State of one mesh of a pair of colliders, kept from query to query.
@@ -32,7 +32,6 @@ pub(crate) struct RigidMesh {
     is_registered: bool,
     declared_kind: Option<SurfaceKind>,
     data: OnceLock<Arc<MeshData>>,
-    neighbours: Neighbours,
 }
 
 /// Change of a mesh since the last query of the pair.
@@ -99,7 +98,6 @@ impl RigidMesh {
             is_registered: false,
             declared_kind: None,
             data: OnceLock::new(),
-            neighbours: Neighbours::default(),
         }
     }
 
@@ -126,12 +124,9 @@ impl RigidMesh {
         self.data = data.map(OnceLock::from).unwrap_or_default();
     }
 
-    fn surface<'a>(&'a mut self, view: &'a MeshView<'a>) -> LazySurface<'a> {
-        self.neighbours.limit();
-        let is_whole = self.is_registered || is_analysed(view.mesh.indices().len());
-        let near = (!is_whole).then_some(&self.neighbours);
+    fn surface<'a>(&'a self, view: &'a MeshView<'a>) -> LazySurface<'a> {
         let (declared, memo) = Default::default();
-        LazySurface { data: &self.data, view, near, declared, memo }
+        LazySurface { data: &self.data, view, declared, memo }
     }
 }
 
@@ -139,8 +134,6 @@ impl RigidMesh {
 pub(crate) struct LazySurface<'a> {
     data: &'a OnceLock<Arc<MeshData>>,
     view: &'a MeshView<'a>,
-    /// Adjacency near contacts, if the mesh is too large to analyse as a whole.
-    near: Option<&'a Neighbours>,
     declared: OnceLock<(SurfaceKind, Option<Side>)>,
     memo: PlaceMemo,
 }
@@ -160,10 +153,11 @@ impl<'a> LazySurface<'a> {
     #[inline]
     pub(crate) fn facets(&self) -> MeshFacets<'_> {
         let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
-        let twins = match self.near {
-            Some(known) => Twins::Near(known),
+        let twins = if data.is_local(self.view) {
+            Twins::Near(data.neighbours(mesh))
+        } else {
             // Computes the flags as well.
-            None => Twins::All(store.surface(mesh, data), data.flags()),
+            Twins::All(store.surface(mesh, data), data.flags())
         };
         MeshFacets { mesh, twins, memo: &self.memo, declared: self.declared().1 }
     }
@@ -174,10 +168,11 @@ impl<'a> LazySurface<'a> {
     fn declared(&self) -> (SurfaceKind, Option<Side>) {
         *self.declared.get_or_init(|| {
             let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
-            let kind = data.kind().unwrap_or_else(|| match self.near {
-                Some(_) => data.kind_by_rays(mesh),
-                None => store.surface(mesh, data).kind(),
-            });
+            let found = || match data.is_local(self.view) {
+                true => data.kind_by_rays(mesh),
+                false => store.surface(mesh, data).kind(),
+            };
+            let kind = data.kind().unwrap_or_else(found);
             let is_declared = data.declared_kind().is_some();
             let side = match kind {
                 SurfaceKind::Sheet => Some(Side::Sheet),
@@ -283,7 +278,7 @@ mod tests {
         let view = store.view(mesh).unwrap();
         known.update(&view);
         let surface = known.acquire(&view, true).unwrap();
-        [surface.near.is_none(), surface.kind() == SurfaceKind::Solid]
+        [!surface.data().is_local(&view), surface.kind() == SurfaceKind::Solid]
     }
 
     #[test]
@@ -299,6 +294,28 @@ mod tests {
             let _registered = store.register(mesh, Some(shape)).unwrap();
             assert_eq!(ask(mesh), [true; 2]);
         }
+    }
+
+    /// Would catch terrains that cost their first contact a look at all triangles, and others without that look.
+    #[test]
+    fn open_terrains_are_analysed_where_something_touches() {
+        let store = store();
+        let ask = |mesh: &TriMesh| {
+            let (view, mut known) = (store.view(mesh).unwrap(), PairMesh::default());
+            known.update(&view);
+            let surface = known.acquire(&view, true).unwrap();
+            let side = surface.around(7).side;
+            (surface.data().surface().is_none(), surface.kind(), side)
+        };
+        let ball = mesh(40, TriMeshFlags::empty());
+        assert_eq!(ask(&ball), (false, SurfaceKind::Solid, Side::Outer));
+        // The lower half is open, but rays from within may leave anywhere.
+        let triangles: Vec<[u32; 3]> = ball.indices()[..ball.indices().len() / 2].to_vec();
+        let bowl = TriMesh::new(ball.vertices().to_vec(), triangles).unwrap();
+        assert_eq!(ask(&bowl).1, SurfaceKind::Sheet);
+        let flat = ball.vertices().iter().map(|at| at * Vec3::new(1.0, 0.1, 1.0)).collect();
+        let hill = TriMesh::new(flat, bowl.indices().to_vec()).unwrap();
+        assert_eq!(ask(&hill), (true, SurfaceKind::Sheet, Side::Sheet));
     }
 
     #[test]

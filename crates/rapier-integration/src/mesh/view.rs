@@ -12,6 +12,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::{PointQuery, Ray, RayCast, RayIntersection};
 use parry3d::shape::{CompositeShape, FeatureId, Shape, TriMesh};
+use sbbk_core::surface::{Place, place};
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
@@ -242,6 +243,23 @@ impl<'a> MeshView<'a> {
             }
         }
         tips
+    }
+
+    /// Returns true if an edge at a tip of the mesh has one triangle: the mesh has a border. A look at a few tips may miss one.
+    pub(super) fn has_bare_edge(&self) -> bool {
+        /// Tips that are looked at. Higher: slower for closed meshes. Lower: slower for sheets whose borders are not at these.
+        const LOOKED_AT: usize = 3;
+        let tips = tip_directions().take(LOOKED_AT);
+        tips.map(|direction| self.lowest_corner(direction).1).any(|tip| {
+            let tip = self.corner(tip);
+            let around = Aabb::new(tip, tip);
+            let near = self.mesh.bvh().intersect_aabb(&around);
+            let fan = near.map(|triangle| self.corners(triangle)).filter(|of| of.contains(&tip));
+            let ends = fan.flatten().filter(|end| *end != tip).map(place);
+            let mut ends: Vec<Place> = ends.collect();
+            ends.sort_unstable();
+            ends.chunk_by(Place::eq).any(|same| same.len() == 1)
+        })
     }
 
     /// Returns the least coordinate of the mesh along a direction, and the half-edge that begins there.

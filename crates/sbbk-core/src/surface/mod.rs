@@ -19,7 +19,7 @@ pub use cones::MinimumCones;
 pub use facets::Facets;
 pub use one_ring::Around;
 pub use rays::{RayTriangles, ends_within};
-pub use sides::{Side, SurfaceKind, kind, side, winding_sign};
+pub use sides::{Side, SurfaceKind, is_surely_open, kind, side, winding_sign};
 pub use slopes::PlaceMemo;
 pub use spread::minimum_cones;
 pub use triangle::{area_vector, longest_side};

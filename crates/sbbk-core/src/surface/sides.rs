@@ -330,34 +330,74 @@ pub fn kind(triangles: &impl RayTriangles) -> SurfaceKind {
     of_samples(&RayMesh::new(triangles, None, memo, WallLimit::MESH))
 }
 
+/// Returns true if a mesh is a sheet, by a few rays that meet nothing at all. Such a mesh needs no [`Surface`] to tell. The mesh must
+/// have a border.
+pub fn is_surely_open(triangles: &impl RayTriangles) -> bool {
+    let memo = &PlaceMemo::default();
+    let (mesh, samples) =
+        (RayMesh::new(triangles, None, memo, WallLimit::MESH), Samples::of(triangles));
+    let most = SAMPLES[0];
+    let is_bare = |i: &u32| {
+        let start = |triangle| middle(&triangles.corners(triangle));
+        let rays = |triangle| Rays::new(&mesh, triangle, start(triangle), *i, ANY);
+        samples.triangle(*i).and_then(rays).is_some_and(|rays| rays.meet_nothing())
+    };
+    let mut open = (0..most).filter(is_bare).zip(1..);
+    open.any(|(_, count)| is_sure(count, most) && share(count, most) > HOLES)
+}
+
+/// Triangles of a mesh by a sequence over its area.
+struct Samples {
+    /// Every so many triangles are considered.
+    step: u32,
+    /// Area of the considered triangles up to each one.
+    areas: Vec<f64>,
+}
+
+impl Samples {
+    fn of(triangles: &impl RayTriangles) -> Self {
+        let step = triangles.count().div_ceil(CONSIDERED).max(1);
+        let areas = (0..triangles.count() / step).scan(0.0, |sum, i| {
+            let area = area_vector(&triangles.corners(step * i)).length();
+            *sum += if area.is_finite() { area } else { 0.0 };
+            Some(*sum)
+        });
+        Self { step, areas: areas.collect() }
+    }
+
+    /// Returns triangle `i` of the sequence; `None` if no triangle has an area.
+    fn triangle(&self, i: u32) -> Option<u32> {
+        let whole = self.areas.last().filter(|whole| **whole > 0.0)?;
+        let place = whole * sequence(f64::from(i), 0);
+        Some(self.step * self.areas.partition_point(|&sum| sum < place) as u32)
+    }
+}
+
+fn share(count: u32, of: u32) -> f64 {
+    f64::from(count) / f64::from(of)
+}
+
+/// Returns true if the share of open triangles is farther from [`HOLES`] than chance explains.
+fn is_sure(open: u32, tested: u32) -> bool {
+    let doubt = SURE * (HOLES * (1.0 - HOLES) / f64::from(tested)).sqrt();
+    (share(open, tested) - HOLES).abs() > doubt
+}
+
 /// Classifies a mesh. Closed meshes have no holes.
 pub(super) fn of_samples(mesh: &RayMesh<impl RayTriangles>) -> SurfaceKind {
-    let triangles = mesh.triangles;
     let is_closed = mesh.components.is_some_and(Components::are_closed);
-    let step = triangles.count().div_ceil(CONSIDERED).max(1);
-    let areas = (0..triangles.count() / step).scan(0.0, |sum, i| {
-        let area = area_vector(&triangles.corners(step * i)).length();
-        *sum += if area.is_finite() { area } else { 0.0 };
-        Some(*sum)
-    });
-    let areas: Vec<f64> = areas.collect();
-    let whole = areas.last().copied().unwrap_or_default();
-    if whole <= 0.0 {
-        return SurfaceKind::Sheet;
-    }
+    let samples = Samples::of(mesh.triangles);
     let mut counts = [0; 4];
     let mut tested = 0;
     for most in if is_closed { [VOTES; 3] } else { SAMPLES } {
         let may_go_on = |i: &u32| *i < VOTES || !mesh.is_exhausted();
         for i in (tested..most).take_while(may_go_on) {
-            let place = whole * sequence(f64::from(i), 0);
-            let triangle = step * areas.partition_point(|&sum| sum < place) as u32;
+            let Some(triangle) = samples.triangle(i) else { return SurfaceKind::Sheet };
             counts[mesh.sample_of_mesh(triangle, i) as usize] += 1;
             tested = i + 1;
         }
-        let open = f64::from(counts[Side::Sheet as usize]) / f64::from(tested);
-        let doubt = SURE * (HOLES * (1.0 - HOLES) / f64::from(tested)).sqrt();
-        if is_closed || (open - HOLES).abs() > doubt || mesh.is_exhausted() {
+        let open = counts[Side::Sheet as usize];
+        if is_closed || is_sure(open, tested) || mesh.is_exhausted() {
             break;
         }
     }
@@ -455,6 +495,11 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         })
     }
 
+    /// True if neither ray meets a triangle.
+    fn meet_nothing(&self) -> bool {
+        [0, 1].map(|i| self.all_hits(i)).iter().all(|hits| hits.is_some_and(Hits::is_empty))
+    }
+
     /// True if the body is in front. Takes one ray.
     fn is_inner(&self, counts: impl Fn(u32) -> bool) -> bool {
         self.winding(0, counts).is_some_and(|front| front >= 1)
@@ -462,8 +507,13 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
 
     /// The winding number that the ray to the front (0) or to the back (1) finds; `None` for too many hits.
     fn winding(&self, i: usize, counts: impl Fn(u32) -> bool) -> Option<i32> {
-        let hits = self.hits[i].get_or_init(|| self.hits([self.to_front, -self.to_front][i]));
-        Some(winding(hits.as_ref()?.iter().filter(|hit| counts(hit.triangle))))
+        Some(winding(self.all_hits(i)?.iter().filter(|hit| counts(hit.triangle))))
+    }
+
+    /// Returns the hits of the ray to the front (0) or to the back (1); `None` if there are too many.
+    fn all_hits(&self, i: usize) -> Option<&Hits> {
+        let direction = [self.to_front, -self.to_front][i];
+        self.hits[i].get_or_init(|| self.hits(direction)).as_ref()
     }
 
     fn hits(&self, direction: DVec3) -> Option<Hits> {

@@ -4,6 +4,7 @@ use super::shapes::*;
 use crate::support::{Random, Soup, soup};
 use glamx::{Quat, Vec3};
 use sbbk_core::surface::SurfaceKind::{InsideOut, Sheet, Solid};
+use sbbk_core::surface::is_surely_open;
 
 fn half(mesh: Soup) -> Soup {
     mapped(mesh, |v| 0.5 * v)
@@ -70,10 +71,10 @@ fn sheets() -> Vec<(&'static str, Soup)> {
     ]
 }
 
-/// Mirrors turn solids inside out.
+/// Mirrors turn solids inside out. Meshes that are surely open are sheets.
 #[test]
 fn kinds_are_independent_of_size_place_and_order() {
-    let mut random = Random(45);
+    let (mut random, mut open) = (Random(45), 0);
     let solids = solids().into_iter().map(|(name, mesh)| (name, mesh, Solid));
     let sheets = sheets().into_iter().map(|(name, mesh)| (name, mesh, Sheet));
     for (name, mesh, kind) in solids.chain(sheets) {
@@ -88,12 +89,16 @@ fn kinds_are_independent_of_size_place_and_order() {
             }
             let found = moved.surface().kind();
             assert_eq!(found, kind, "{name}, {size} times as large");
+            let is_open = is_surely_open(&moved);
+            assert!(!is_open || kind == Sheet, "{name} is no sheet");
+            open += u32::from(is_open);
             let mirrored = mapped(moved, |v| v * Vec3::new(-1.0, 1.0, 1.0));
             let found = mirrored.surface().kind();
             let mirror = if kind == Solid { InsideOut } else { Sheet };
             assert_eq!(found, mirror, "{name}, mirrored");
         }
     }
+    assert!(open > 20, "{open}");
 }
 
 #[test]
