@@ -6,7 +6,7 @@ use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     Unsupported,
 };
-use parry3d::shape::Shape;
+use parry3d::shape::{Shape, ShapeType};
 use sbbk_core::traverse::DescentCounts;
 
 use super::SbbkDispatcher;
@@ -86,7 +86,10 @@ impl SbbkDispatcher {
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return None,
         };
-        if let Some(field) = other.as_heightfield().filter(|_| kinds.height_fields) {
+        if kinds.height_fields
+            && other.shape_type() == ShapeType::HeightField
+            && let Some(field) = other.as_heightfield()
+        {
             let (mesh, field) = (self.view(mesh)?, Field(field));
             if is_new && !field.is_near(&mesh, &mesh_place.mesh_in_shape(pos12), prediction) {
                 return Some(Kind::Apart);
@@ -102,7 +105,7 @@ impl SbbkDispatcher {
         if is_new && !self.config.leave_solids() && !is_near() {
             return Some(Kind::Apart);
         }
-        if !Parts::are_supported(other) {
+        if !parts.are_supported(other) {
             return None;
         }
         Some(Kind::Convex(self.view(mesh)?, parts, mesh_place))

@@ -7,7 +7,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::{CompositeShape, ConvexPolyhedron, Shape};
+use parry3d::shape::{CompositeShape, ConvexPolyhedron, Shape, ShapeType};
 use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
@@ -46,20 +46,25 @@ pub(crate) struct ListToken {
 
 #[derive(Copy, Clone, Debug, PartialEq)]
 enum Token {
-    Small(Extent),
+    Small((ShapeType, Real, [Vec3; 3])),
     List(ListToken),
 }
 
 impl<'a> Parts<'a> {
     /// Returns `None` for shapes that only Parry supports. Does not look at the [parts](Self::are_supported) of compounds.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
-        if let Some(compound) = shape.as_compound() {
+        let shape_type = shape.shape_type();
+        if shape_type == ShapeType::Compound
+            && let Some(compound) = shape.as_compound()
+        {
             let parts = compound.shapes();
             let flags = u32::from(compound.flags().bits());
             let token = ListToken::of_parts(parts, flags, compound.local_aabb());
             return Some(Self::Many(compound, token));
         }
-        if let Some(polyline) = shape.as_polyline() {
+        if shape_type == ShapeType::Polyline
+            && let Some(polyline) = shape.as_polyline()
+        {
             let flags = u32::from(polyline.flags().bits());
             let token = ListToken::of_parts(polyline.indices(), flags, &polyline.bvh().root_aabb());
             return (!polyline.is_deformable()).then_some(Self::Many(polyline, token));
@@ -68,11 +73,10 @@ impl<'a> Parts<'a> {
     }
 
     /// Returns false for a compound with a part that only Parry supports. Looks at all parts.
-    pub(crate) fn are_supported(shape: &dyn Shape) -> bool {
+    pub(crate) fn are_supported(&self, shape: &dyn Shape) -> bool {
         let is_supported = |part: &dyn Shape| ConvexShape::of(part).is_some();
-        shape
-            .as_compound()
-            .is_none_or(|it| it.shapes().iter().all(|(_, part)| is_supported(&**part)))
+        let compound = if let Self::Many(..) = self { shape.as_compound() } else { None };
+        compound.is_none_or(|it| it.shapes().iter().all(|(_, part)| is_supported(&**part)))
     }
 
     /// Calls `then` with a part.
@@ -131,7 +135,7 @@ impl Token {
             Parts::Many(_, token) => Self::List(token),
             Parts::One(shape) => match shape.polyhedron() {
                 Some(hull) => Self::List(ListToken::of_hull(hull, shape.radius())),
-                None => Self::Small(Extent::of(shape)),
+                None => Self::Small(shape.parameters()),
             },
         }
     }

@@ -146,9 +146,8 @@ impl ConvexQuery<'_> {
         if !is_known {
             let placements = self.pair.mesh_place.placements(self.pair.pose);
             let extent = self.part_data.extent(index, part);
-            let has_mesh_axes = matches!(part.shape, ConvexShape::Ball(_));
-            let placed = PlacedPart::new(index, part, placements, extent);
-            parts[slot] = Some(PlacedPart { has_mesh_axes, ..placed });
+            let placed = parts[slot].insert(PlacedPart::new(index, part, placements, extent));
+            placed.has_mesh_axes = matches!(part.shape, ConvexShape::Ball(_));
         }
         parts[slot].as_ref().expect("the part was placed just now")
     }

@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 use glamx::{DVec3, Vec3, Vec3Swizzles};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{
-    Ball, ConvexPolyhedron, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType,
+    Ball, ConvexPolyhedron, Cuboid, HalfSpace, PolygonalFeatureMap, RoundShape, Segment, Shape,
+    ShapeType, Triangle, TypedShape,
 };
 use sbbk_core::contact::convex::HullPoints;
 use sbbk_core::volumes::Sphere;
@@ -69,6 +70,40 @@ impl ConvexShape<'_> {
         shape.as_convex_polyhedron().or_else(round)
     }
 
+    /// Returns the kind and the numbers that define the shape. Polyhedra have more numbers than these.
+    pub(super) fn parameters(&self) -> (ShapeType, Real, [Vec3; 3]) {
+        let one = |vector| [vector, Vec3::ZERO, Vec3::ZERO];
+        let round = |half_height, radius| one(Vec3::new(half_height, radius, 0.0));
+        let segment = |it: &Segment| [it.a, it.b, Vec3::ZERO];
+        let triangle = |it: &Triangle| [it.a, it.b, it.c];
+        let (shape_type, numbers) = match *self {
+            Self::Ball(_) => (ShapeType::Ball, one(Vec3::ZERO)),
+            Self::HalfSpace(half_space) => (ShapeType::HalfSpace, one(half_space.normal)),
+            Self::Cuboid(cuboid) => (ShapeType::Cuboid, one(cuboid.half_extents)),
+            Self::Features { shape, .. } => match shape.as_typed_shape() {
+                TypedShape::Segment(it) => (ShapeType::Segment, segment(it)),
+                TypedShape::Capsule(it) => (ShapeType::Capsule, segment(&it.segment)),
+                TypedShape::Triangle(it) => (ShapeType::Triangle, triangle(it)),
+                TypedShape::RoundTriangle(it) => {
+                    (ShapeType::RoundTriangle, triangle(&it.inner_shape))
+                }
+                TypedShape::Cylinder(it) => (ShapeType::Cylinder, round(it.half_height, it.radius)),
+                TypedShape::RoundCylinder(RoundShape { inner_shape: it, .. }) => {
+                    (ShapeType::RoundCylinder, round(it.half_height, it.radius))
+                }
+                TypedShape::Cone(it) => (ShapeType::Cone, round(it.half_height, it.radius)),
+                TypedShape::RoundCone(RoundShape { inner_shape: it, .. }) => {
+                    (ShapeType::RoundCone, round(it.half_height, it.radius))
+                }
+                TypedShape::RoundCuboid(it) => {
+                    (ShapeType::RoundCuboid, one(it.inner_shape.half_extents))
+                }
+                _ => (shape.shape_type(), one(Vec3::ZERO)),
+            },
+        };
+        (shape_type, self.radius(), numbers)
+    }
+
     /// Returns a point within the shape; `None` for a half-space.
     pub(super) fn middle(&self) -> Option<DVec3> {
         match self {
@@ -87,15 +122,12 @@ impl ConvexShape<'_> {
 }
 
 /// The extent of a shape: its rounding radius and the box around the rest.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug)]
 pub(super) struct Extent {
-    shape_type: ShapeType,
     radius: Real,
     min: Vec3,
     max: Vec3,
-    /// Support point in a skew direction, or the normal of a half-space: tells shapes with equal boxes
-    /// apart.
-    skew: Vec3,
+    is_infinite: bool,
 }
 
 /// Returns the ball around a box, grown by the rounding of ten operations on the coordinates.
@@ -109,31 +141,25 @@ const SKEW: Vec3 = Vec3::new(0.267, 0.535, 0.802);
 
 impl Extent {
     pub(super) fn of(shape: ConvexShape<'_>) -> Self {
-        let (shape_type, radius) = (ShapeType::Ball, shape.radius());
-        let [min, max, skew] = [Vec3::ZERO; 3];
-        let point = Self { shape_type, radius, min, max, skew };
+        let (radius, min, max) = (shape.radius(), Vec3::ZERO, Vec3::ZERO);
+        let point = Self { radius, min, max, is_infinite: false };
         if let Some(hull) = shape.polyhedron() {
             let points = || hull.points().iter().copied();
             let min = points().fold(Vec3::INFINITY, Vec3::min);
-            let max = points().fold(Vec3::NEG_INFINITY, Vec3::max);
-            return Self { shape_type: ShapeType::ConvexPolyhedron, min, max, ..point };
+            return Self { min, max: points().fold(Vec3::NEG_INFINITY, Vec3::max), ..point };
         }
         match shape {
             ConvexShape::Ball(_) => point,
-            ConvexShape::HalfSpace(half_space) => {
-                Self { shape_type: ShapeType::HalfSpace, skew: half_space.normal, ..point }
-            }
+            ConvexShape::HalfSpace(_) => Self { is_infinite: true, ..point },
             ConvexShape::Cuboid(cuboid) => {
                 let max = cuboid.half_extents;
-                Self { shape_type: ShapeType::Cuboid, min: -max, max, ..point }
+                Self { min: -max, max, ..point }
             }
-            ConvexShape::Features { shape, map, .. } => {
+            ConvexShape::Features { map, .. } => {
                 let end = |axis: Vector| map.local_support_point(axis);
                 Self {
-                    shape_type: shape.shape_type(),
                     min: Vec3::new(end(-Vec3::X).x, end(-Vec3::Y).y, end(-Vec3::Z).z),
                     max: Vec3::new(end(Vec3::X).x, end(Vec3::Y).y, end(Vec3::Z).z),
-                    skew: end(SKEW),
                     ..point
                 }
             }
@@ -151,15 +177,11 @@ impl Extent {
         self.min.abs().max(self.max.abs()).max_element()
     }
 
-    fn is_infinite(&self) -> bool {
-        self.shape_type == ShapeType::HalfSpace
-    }
-
     /// Returns a ball around the shape; an infinite one for a half-space.
     pub(super) fn ball(&self) -> Sphere {
         let Sphere { centre, radius } = ball_around(self.min, self.max);
         let radius = (radius + self.radius) * (1.0 + gamma(8));
-        Sphere { centre, radius: if self.is_infinite() { Real::INFINITY } else { radius } }
+        Sphere { centre, radius: if self.is_infinite { Real::INFINITY } else { radius } }
     }
 
     /// Returns the box around the shape without its radius, and the radius.
@@ -171,7 +193,7 @@ impl Extent {
     /// support points. The reach of a half-space is infinite.
     #[inline(always)]
     pub(super) fn widest(&self, reach: f64) -> (DVec3, DVec3, f64) {
-        let missed = if self.is_infinite() { f64::INFINITY } else { gamma(16).into() };
+        let missed = if self.is_infinite { f64::INFINITY } else { gamma(16).into() };
         let reach = reach + missed * f64::from(self.core_size().max(f32::MIN_POSITIVE));
         (self.min.as_dvec3(), self.max.as_dvec3(), reach)
     }
