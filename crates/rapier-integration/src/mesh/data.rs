@@ -3,13 +3,12 @@ use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
 
 use arrayvec::ArrayVec;
 use parry3d::shape::TriMesh;
-use sbbk_core::surface::{Surface, SurfaceKind, is_surely_open, kind};
+use sbbk_core::surface::{Surface, SurfaceKind, kind};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
 use super::flags::TriangleFlags;
-use super::neighbours::{MeshRays, Neighbours};
-use super::store::is_analysed;
-use super::view::MeshView;
+use super::neighbours::Neighbours;
+use super::rays::MeshRays;
 
 /// Tree and surface of a mesh, for all colliders with equal geometry. A thread computes a part when the
 /// thread needs that part. Two threads may compute one tree or surface at once, and neither waits. Kind
@@ -23,7 +22,7 @@ pub(crate) struct MeshData {
     /// True if the mesh needs no analysis as a whole.
     is_local: OnceLock<bool>,
     /// Kind of a mesh that is not analysed as a whole.
-    kind: OnceLock<SurfaceKind>,
+    pub(super) kind: OnceLock<SurfaceKind>,
     tree: OnceLock<Tree>,
     has_build_begun: AtomicBool,
     declared_kind: AtomicU8,
@@ -66,21 +65,9 @@ impl MeshData {
         Ok(self.tree.set(tree).is_ok())
     }
 
-    /// Returns true if triangles are analysed where something touches. This holds for large meshes, and for surely open ones.
-    pub(super) fn is_local(&self, view: &MeshView<'_>) -> bool {
-        /// Meshes up to this size are analysed as a whole. Higher: bodies come onto new terrains later. Lower: the search for a
-        /// border takes longer.
-        const LEAST: usize = 512;
-        let count = view.mesh.indices().len();
-        let is_open =
-            || count > LEAST && view.has_bare_edge() && is_surely_open(&MeshRays(view.mesh));
-        let is_local = || {
-            if is_analysed(count) && is_open() {
-                let _ = self.kind.set(SurfaceKind::Sheet);
-            }
-            !is_analysed(count) || self.kind.get().is_some()
-        };
-        self.analysed.get().is_none() && *self.is_local.get_or_init(is_local)
+    /// Returns true if the mesh has not been analysed as a whole, and `find` finds that this is not needed.
+    pub(super) fn is_local(&self, find: impl FnOnce() -> bool) -> bool {
+        self.analysed.get().is_none() && *self.is_local.get_or_init(find)
     }
 
     /// Returns the neighbours of triangles of `mesh`, whose data this must be.

@@ -1,267 +1,24 @@
+//! Neighbours of the triangles of a mesh, found one by one by its BVH where something touches.
+
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
-use glamx::DVec3;
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::math::{Real, Vector};
-use parry3d::partitioning::BvhNode;
+use parry3d::math::Vector;
 use parry3d::shape::TriMesh;
 use rustc_hash::FxHashSet;
-use sbbk_core::contact::Feature;
-use sbbk_core::surface::strays::has_strays;
-use sbbk_core::surface::{
-    Around, Facets, MinimumCones, Place, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
-    area_vector, hangs, is_flat, minimum_cones, place, side, sides, winding_sign,
-};
+use sbbk_core::surface::{Place, RayTriangles, hangs, is_flat, place, sides};
 
 use super::flags::TriangleFlags;
-
-/// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
-#[derive(Copy, Clone)]
-pub(crate) struct MeshFacets<'a> {
-    pub(super) mesh: &'a TriMesh,
-    pub(super) twins: Twins<'a>,
-    pub(super) memo: &'a PlaceMemo,
-    /// Side of all triangles but walls within. `None` if rays find the sides.
-    pub(super) declared: Option<Side>,
-}
-
-/// Twins and flags of the triangles of a mesh.
-#[derive(Copy, Clone)]
-pub(super) enum Twins<'a> {
-    All(&'a Surface, &'a [TriangleFlags]),
-    Near(&'a Neighbours),
-}
-
-impl<'a> Twins<'a> {
-    /// Returns the surface of a mesh that is analysed as a whole.
-    fn surface(self) -> Option<&'a Surface> {
-        match self {
-            Self::All(surface, _) => Some(surface),
-            Self::Near(_) => None,
-        }
-    }
-}
-
-/// Least distance of a part that is alone from all others, in radii of the part. Higher: parts near each other take
-/// more rays. Lower: walls between parts have contacts, though rays pass these.
-const ALONE: Real = 2.0e-4;
-
-impl MeshFacets<'_> {
-    fn flags(&self, triangle: u32) -> &TriangleFlags {
-        match self.twins {
-            Twins::All(_, flags) => &flags[triangle as usize],
-            Twins::Near(known) => &known.of(self.mesh, triangle).flags,
-        }
-    }
-
-    /// Returns what is on either side of a triangle of a closed mesh. Takes two rays the first time.
-    pub(crate) fn side(self, triangle: u32) -> Side {
-        self.flags(triangle).side().unwrap_or_else(|| {
-            let first = self.first_of_crowd(triangle).filter(|&first| first != triangle);
-            let is_face = first.is_some_and(|first| self.side(first) == Side::Outer);
-            let rays = MeshRays(self.mesh);
-            let found = || side(&rays, self.twins.surface(), triangle, self.memo);
-            let side = if is_face { Side::Outer } else { found() };
-            self.flags(triangle).set_side(side);
-            side
-        })
-    }
-
-    /// Returns what counts as the side of a triangle. A double counts as a wall within, so it has no contacts.
-    #[inline]
-    pub(super) fn declared_side(self, triangle: u32) -> Side {
-        match self.declared {
-            _ if self.is_double(triangle) => Side::Inner,
-            Some(Side::Sheet) => Side::Sheet,
-            Some(declared) if self.side(triangle) != Side::Inner => declared,
-            _ => self.side(triangle),
-        }
-    }
-
-    /// Returns the sign of the winding number of a closed mesh around a point, if two rays agree.
-    pub(super) fn winding_sign(self, point: Vector) -> Option<i32> {
-        let rays = MeshRays(self.mesh);
-        winding_sign(&rays, self.twins.surface(), point.as_dvec3(), self.memo)
-    }
-
-    /// Returns true if an earlier triangle has the same corners.
-    pub(crate) fn is_double(self, triangle: u32) -> bool {
-        match self.twins {
-            Twins::All(surface, _) => surface.is_double(triangle),
-            Twins::Near(known) => known.of(self.mesh, triangle).is_double(),
-        }
-    }
-
-    /// Returns true if a triangle has a double that is wound the other way.
-    pub(crate) fn is_two_sided(self, triangle: u32) -> bool {
-        match self.twins {
-            Twins::All(surface, _) => surface.has_doubles() && is_two_sided(self.mesh, triangle),
-            Twins::Near(known) => known.of(self.mesh, triangle).is_two_sided(),
-        }
-    }
-
-    /// Returns the first triangle of a crowd or a small component. If that triangle is a face, so are all.
-    fn first_of_crowd(self, triangle: u32) -> Option<u32> {
-        let Twins::All(surface, _) = self.twins else { return None };
-        let of_hub = surface.crowd(*self.mesh.triangle(triangle).vertices());
-        of_hub.or_else(|| {
-            surface.has_small_components().then(|| self.first_of_component(triangle))?
-        })
-    }
-
-    /// Returns the first triangle of a small closed component that is alone in its box.
-    fn first_of_component(self, triangle: u32) -> Option<u32> {
-        let (mut part, mut at) = (vec![triangle], 0);
-        let mut bounds = self.mesh.triangle(triangle).local_aabb();
-        while let Some(&of) = part.get(at) {
-            for twin in (3 * of..3 * of + 3).map(|half_edge| self.twin(half_edge)) {
-                let other = twin? / 3;
-                if !part.contains(&other) {
-                    bounds.merge(&self.mesh.triangle(other).local_aabb());
-                    part.push(other);
-                }
-            }
-            at += 1;
-            if part.len() > SMALL_COMPONENT {
-                return None;
-            }
-        }
-        // Not negative, and 0 where a vertex is NaN.
-        let bounds = bounds.loosened((ALONE * bounds.half_extents().length()).max(0.0));
-        let is_alone = self.mesh.bvh().intersect_aabb(&bounds).all(|other| part.contains(&other));
-        part.into_iter().min().filter(|_| is_alone)
-    }
-
-    /// Searches the strays of a feature, in about 1 µs, and keeps in the flags if there are any.
-    #[cold]
-    fn find_strays(self, triangle: u32, feature: Feature) {
-        let surface = Around { facets: self, side: Side::Sheet };
-        let found = has_strays(&surface, triangle, feature);
-        if let Feature::Vertex(_) = feature {
-            // Once for all triangles of a fan.
-            for half_edge in surface.ring(triangle, feature).0 {
-                let vertex = Feature::Vertex((half_edge % 3) as u8);
-                self.flags(half_edge / 3).set(vertex, found);
-            }
-        } else {
-            self.flags(triangle).set(feature, found);
-        }
-    }
-
-    #[cold]
-    fn find_cones(self, triangle: u32) -> MinimumCones {
-        let cones = minimum_cones(&self, triangle);
-        self.flags(triangle).set_cones(cones);
-        cones
-    }
-}
-
-impl Facets for MeshFacets<'_> {
-    #[inline]
-    fn twin(&self, half_edge: u32) -> Option<u32> {
-        match self.twins {
-            Twins::All(surface, _) => surface.twin(half_edge),
-            Twins::Near(known) => known.of(self.mesh, half_edge / 3).twin(half_edge % 3),
-        }
-    }
-
-    #[inline(always)]
-    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
-        let triangle = self.mesh.indices()[half_edge as usize / 3];
-        self.mesh.vertices()[triangle[(half_edge as usize + i) % 3] as usize].as_dvec3()
-    }
-
-    #[inline]
-    fn is_whole(&self, triangle: u32, feature: Feature) -> bool {
-        self.flags(triangle).is_whole(feature).unwrap_or_else(|| {
-            self.find_strays(triangle, feature);
-            self.flags(triangle).is_whole(feature) != Some(false)
-        })
-    }
-
-    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        let near = box_between(corners);
-        // Doubles change no result. They are skipped where no search is needed to find them.
-        let is_double = |triangle: &u32| match self.twins {
-            Twins::All(all, _) => all.is_double(*triangle),
-            Twins::Near(_) => sliver(self.mesh, *triangle).is_some(),
-        };
-        let near = self.mesh.bvh().intersect_aabb(&near);
-        let _ = near.filter(|triangle| !is_double(triangle)).try_for_each(visit);
-    }
-
-    fn outward(&self, triangle: u32) -> f64 {
-        self.declared_side(triangle).outward().unwrap_or(0.0)
-    }
-
-    /// Triangles whose neighbours are not all known have none, as these take a search each.
-    #[inline]
-    fn cones(&self, triangle: u32) -> MinimumCones {
-        let Twins::All(_, flags) = self.twins else { return MinimumCones::ALL };
-        flags[triangle as usize].cones().unwrap_or_else(|| self.find_cones(triangle))
-    }
-
-    fn memo(&self) -> Option<&PlaceMemo> {
-        Some(self.memo)
-    }
-}
-
-/// Rays through the BVH of a mesh.
-pub(super) struct MeshRays<'a>(pub(super) &'a TriMesh);
-
-impl RayTriangles for MeshRays<'_> {
-    fn count(&self) -> u32 {
-        self.0.indices().len() as u32
-    }
-
-    fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        let corners = self.0.indices()[triangle as usize];
-        corners.map(|corner| self.0.vertices()[corner as usize].as_dvec3())
-    }
-
-    fn bounds(&self) -> [DVec3; 2] {
-        let bounds = self.0.bvh().root_aabb();
-        [bounds.mins, bounds.maxs].map(|corner| corner.as_dvec3())
-    }
-
-    fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        let bounds = self.0.triangle(triangle).local_aabb().loosened((slack as Real).next_up());
-        let bounds = BvhNode::leaf(bounds, 0);
-        let corners @ [a, ..] = self.corners(triangle);
-        let normal = area_vector(&corners).normalize_or_zero();
-        // The box of a slanted triangle may hold a whole mesh.
-        let is_near = |node: &BvhNode| {
-            let [low, high] = [node.mins(), node.maxs()].map(|corner| corner.as_dvec3());
-            let height = normal.dot(0.5 * (low + high) - a).abs();
-            node.intersects(&bounds) && height <= normal.abs().dot(0.5 * (high - low)) + slack
-        };
-        let _ = self.0.bvh().leaves(is_near).try_for_each(visit);
-    }
-
-    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        let inverse = direction.recip();
-        let is_met = |node: &BvhNode| {
-            let [low, high] =
-                [node.mins(), node.maxs()].map(|corner| (corner.as_dvec3() - start) * inverse);
-            let (first, last) = (low.min(high).max_element(), low.max(high).min_element());
-            last >= 0.0 && first <= last + RAY_ROUNDING * last
-        };
-        let _ = self.0.bvh().leaves(is_met).try_for_each(visit);
-    }
-}
-
-/// Rounding of the lengths at which rays meet boxes.
-const RAY_ROUNDING: f64 = 1.0e-12;
+use super::rays::MeshRays;
 
 /// The twins of the edges of a triangle, and its flags.
 #[derive(Debug, Default)]
-struct Neighbour {
+pub(super) struct Neighbour {
     /// 0 before the search, 1 for none, else 2 more than the twin. The highest bits tell if the triangle is a double, and if it
     /// has a double that is wound the other way.
     twins: [AtomicU32; 3],
-    flags: TriangleFlags,
+    pub(super) flags: TriangleFlags,
 }
 
 impl Neighbour {
@@ -272,7 +29,7 @@ impl Neighbour {
         self.twins[0].load(Ordering::Acquire) != 0
     }
 
-    fn twin(&self, edge: u32) -> Option<u32> {
+    pub(super) fn twin(&self, edge: u32) -> Option<u32> {
         let twin = self.twins[edge as usize].load(Ordering::Relaxed);
         (twin & !Self::HIGHEST).checked_sub(2)
     }
@@ -281,11 +38,11 @@ impl Neighbour {
         self.twins[edge].load(Ordering::Relaxed) & Self::HIGHEST != 0
     }
 
-    fn is_double(&self) -> bool {
+    pub(super) fn is_double(&self) -> bool {
         self.has_highest(0)
     }
 
-    fn is_two_sided(&self) -> bool {
+    pub(super) fn is_two_sided(&self) -> bool {
         self.has_highest(1)
     }
 
@@ -303,7 +60,7 @@ impl Neighbour {
 }
 
 /// Returns true if a triangle has a double that is wound the other way.
-fn is_two_sided(mesh: &TriMesh, triangle: u32) -> bool {
+pub(super) fn is_two_sided(mesh: &TriMesh, triangle: u32) -> bool {
     let rays = MeshRays(mesh);
     let [a, b, c] = rays.corners(triangle);
     let backs = [[a, c, b], [c, b, a], [b, a, c]];
@@ -351,7 +108,7 @@ fn twins(mesh: &TriMesh, triangle: u32) -> ([Option<u32>; 3], bool) {
 }
 
 /// Returns whether a sliver [hangs](hangs()). `None` for other triangles.
-fn sliver(mesh: &TriMesh, triangle: u32) -> Option<bool> {
+pub(super) fn sliver(mesh: &TriMesh, triangle: u32) -> Option<bool> {
     let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
     let sides = |triangle: u32| sides(corners(triangle).map(place));
     if !is_flat(&corners(triangle)) {
@@ -371,7 +128,7 @@ fn sliver(mesh: &TriMesh, triangle: u32) -> Option<bool> {
 }
 
 /// Returns the places of three corners, sorted.
-fn places(corners: [Vector; 3]) -> [Place; 3] {
+pub(super) fn places(corners: [Vector; 3]) -> [Place; 3] {
     let mut places = corners.map(place);
     places.sort_unstable();
     places
@@ -398,7 +155,7 @@ impl Neighbours {
 
     /// Returns the neighbours of a triangle.
     #[inline]
-    fn of(&self, mesh: &TriMesh, triangle: u32) -> &Neighbour {
+    pub(super) fn of(&self, mesh: &TriMesh, triangle: u32) -> &Neighbour {
         let triangle_in = triangle as usize % CHUNK;
         let chunk = self.chunks[triangle as usize / CHUNK].get_or_init(|| {
             self.chunk_count.fetch_add(1, Ordering::Relaxed);
@@ -415,104 +172,5 @@ impl Neighbours {
     pub(super) fn bytes(&self) -> usize {
         let chunks = self.chunk_count.load(Ordering::Relaxed) * size_of::<Chunk>();
         size_of_val(&*self.chunks) + chunks
-    }
-}
-
-/// Greatest slope, as a sine, by which a surface may rise beside the point of an impact. Higher: walls stop bodies that
-/// slide along them. Lower: rounding hides impacts of parallel faces.
-const IMPACT_RISE: f64 = 1.0e-4;
-
-/// Returns true if no triangle at the place of an impact leads towards the other body. `other` has the unit direction to that body,
-/// and its distance.
-pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, other: (DVec3, f64)) -> bool {
-    let (known, memo) = (Neighbours::new(0), PlaceMemo::default());
-    let twins = Twins::Near(&known);
-    let facets = MeshFacets { mesh, twins, memo: &memo, declared: Some(Side::Sheet) };
-    !Around { facets, side: Side::Sheet }.rises(triangle, place, other, IMPACT_RISE)
-}
-
-/// Returns the box between two corners in f32, grown by the rounding.
-pub(crate) fn box_between(corners: [DVec3; 2]) -> Aabb {
-    let [low, high] = corners.map(|corner| corner.as_vec3());
-    Aabb::new(low - f32::EPSILON * low.abs(), high + f32::EPSILON * high.abs())
-}
-
-#[cfg(test)]
-mod tests {
-    use std::ops::Range;
-
-    use oorandom::Rand32;
-    use parry3d::shape::Cuboid;
-    use sbbk_core::surface::Surface;
-
-    use super::*;
-
-    /// The triangles of these soups are often points, segments, duplicates, or share an edge with two
-    /// others.
-    #[test]
-    fn local_twins_and_doubles_are_those_of_the_surface() {
-        let (mut random, mut found, mut doubles, mut slivers) = (Rand32::new(1), 0, 0, 0);
-        for round in 0..400 {
-            let mut place = || Vector::from_array([(); 3].map(|()| random.rand_range(0..3) as f32));
-            let vertices: Vec<Vector> = (0..12).map(|_| place()).collect();
-            let mut corner = || random.rand_range(0..12);
-            let triangles = (0..1 + round % 20).map(|_| [corner(), corner(), corner()]).collect();
-            let mesh = TriMesh::new(vertices, triangles).expect("there are triangles");
-            let whole = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
-            let known = Neighbours::new(mesh.indices().len());
-            let (twins, memo) = (Twins::Near(&known), &PlaceMemo::default());
-            let facets = MeshFacets { mesh: &mesh, twins, memo, declared: None };
-            for half_edge in 0..3 * mesh.indices().len() as u32 {
-                let twin = whole.twin(half_edge);
-                assert_eq!(facets.twin(half_edge), twin, "{half_edge} of {:?}", mesh.indices());
-                found += u32::from(twin.is_some());
-            }
-            let places = mesh.triangles().map(|triangle| places(*triangle.vertices()));
-            let places: Vec<_> = places.collect();
-            for (i, corners) in places.iter().enumerate() {
-                let is_repeated = places[..i].contains(corners);
-                let triangle = i as u32;
-                let is_sliver = sliver(&mesh, triangle).is_some();
-                let told = [whole.is_double(triangle), facets.is_double(triangle)];
-                let is_double = is_repeated || is_sliver;
-                assert_eq!(told, [is_double; 2], "{triangle} of {:?}", mesh.indices());
-                doubles += u32::from(is_repeated);
-                slivers += u32::from(is_sliver);
-            }
-        }
-        assert!(found > 1000 && doubles > 100 && slivers > 100, "{found} {doubles} {slivers}");
-    }
-
-    /// Boxes are alone, touch, cross, or are within others. Would catch parts that share a wrong side.
-    #[test]
-    fn sides_of_small_parts_are_those_that_rays_find() {
-        let (mut random, mut counts) = (Rand32::new(2), [0; 4]);
-        for size in [3, 5, 9] {
-            let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-            for _ in 0..30 {
-                let mut steps = |range: Range<u32>| {
-                    let mut step = || random.rand_range(range.clone()) as f32;
-                    Vector::from_array([(); 3].map(|()| step()))
-                };
-                let (half, place) = (0.25 * steps(1..4), steps(0..size));
-                let (own, of) = Cuboid::new(half).to_trimesh();
-                let first = vertices.len() as u32;
-                triangles.extend(of.into_iter().map(|corners| corners.map(|i| first + i)));
-                vertices.extend(own.into_iter().map(|vertex| vertex + place));
-            }
-            let mesh = TriMesh::new(vertices, triangles).expect("there are boxes");
-            let surface = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
-            assert!(surface.has_small_components());
-            let flags: Vec<_> = mesh.indices().iter().map(|_| TriangleFlags::default()).collect();
-            let (twins, memo) = (Twins::All(&surface, &flags), &PlaceMemo::default());
-            let facets = MeshFacets { mesh: &mesh, twins, memo, declared: None };
-            for triangle in 0..flags.len() as u32 {
-                let found = facets.side(triangle);
-                let by_rays = side(&MeshRays(&mesh), Some(&surface), triangle, memo);
-                assert_eq!(found, by_rays, "{triangle} of {size}");
-                counts[found as usize] += 1;
-            }
-        }
-        assert!(counts[0] > 100 && counts[2] > 100, "{counts:?}");
     }
 }

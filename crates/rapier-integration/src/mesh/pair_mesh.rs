@@ -2,13 +2,14 @@ use std::sync::{Arc, OnceLock};
 
 use glamx::Vec3;
 use parry3d::math::Real;
-use sbbk_core::surface::{Around, PlaceMemo, Side, Surface, SurfaceKind};
+use sbbk_core::surface::{Around, PlaceMemo, Side, Surface, SurfaceKind, is_surely_open};
 use sbbk_core::tree::Tree;
 
 use super::data::{MeshData, Tips};
+use super::facets::{MeshFacets, Twins};
 use super::identity::MeshToken;
-use super::neighbours::{MeshFacets, Twins};
-use super::store::is_small;
+use super::rays::MeshRays;
+use super::store::{is_analysed, is_small};
 use super::view::{MeshView, nearest};
 
 /// State of one mesh of a pair of colliders, kept from query to query.
@@ -149,11 +150,31 @@ impl<'a> LazySurface<'a> {
         self.data.get_or_init(|| self.view.store.entry(self.view.mesh))
     }
 
+    /// Returns true if triangles are analysed where something touches. This holds for large meshes, and for surely open ones.
+    fn is_local(&self) -> bool {
+        /// Meshes up to this size are analysed as a whole. Higher: bodies come onto new terrains later. Lower: the search for a
+        /// border takes longer.
+        const LEAST: usize = 512;
+        let (data, mesh) = (self.data(), self.view.mesh);
+        data.is_local(|| {
+            let count = mesh.indices().len();
+            if !is_analysed(count) {
+                return true;
+            }
+            let has_border = || count > LEAST && self.view.has_bare_edge();
+            let is_open = has_border() && is_surely_open(&MeshRays(mesh));
+            if is_open {
+                let _ = data.kind.set(SurfaceKind::Sheet);
+            }
+            is_open
+        })
+    }
+
     /// Returns the triangles of the mesh with their adjacency.
     #[inline]
     pub(crate) fn facets(&self) -> MeshFacets<'_> {
         let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
-        let twins = if data.is_local(self.view) {
+        let twins = if self.is_local() {
             Twins::Near(data.neighbours(mesh))
         } else {
             // Computes the flags as well.
@@ -168,7 +189,7 @@ impl<'a> LazySurface<'a> {
     fn declared(&self) -> (SurfaceKind, Option<Side>) {
         *self.declared.get_or_init(|| {
             let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
-            let found = || match data.is_local(self.view) {
+            let found = || match self.is_local() {
                 true => data.kind_by_rays(mesh),
                 false => store.surface(mesh, data).kind(),
             };
@@ -278,7 +299,7 @@ mod tests {
         let view = store.view(mesh).unwrap();
         known.update(&view);
         let surface = known.acquire(&view, true).unwrap();
-        [!surface.data().is_local(&view), surface.kind() == SurfaceKind::Solid]
+        [!surface.is_local(), surface.kind() == SurfaceKind::Solid]
     }
 
     #[test]
