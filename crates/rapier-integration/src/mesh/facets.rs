@@ -128,7 +128,7 @@ impl MeshFacets<'_> {
                 return None;
             }
         }
-        // Not negative, and 0 where a vertex is NaN.
+        // A vertex may be NaN.
         let bounds = bounds.loosened((ALONE * bounds.half_extents().length()).max(0.0));
         let is_alone = self.mesh.bvh().intersect_aabb(&bounds).all(|other| part.contains(&other));
         part.into_iter().min().filter(|_| is_alone)
@@ -236,8 +236,7 @@ mod tests {
     use oorandom::Rand32;
     use parry3d::shape::Cuboid;
 
-    /// The triangles of these soups are often points, segments, duplicates, or share an edge with two
-    /// others.
+    /// Many triangles of these soups are points, segments or duplicates. Many edges have three triangles.
     #[test]
     fn local_twins_and_doubles_are_those_of_the_surface() {
         let (mut random, mut found, mut doubles, mut slivers) = (Rand32::new(1), 0, 0, 0);
