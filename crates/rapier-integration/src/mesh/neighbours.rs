@@ -1,16 +1,16 @@
 //! Neighbours of the triangles of a mesh, found one by one by its BVH where something touches.
 
-use std::ops::ControlFlow;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
+use arrayvec::ArrayVec;
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use parry3d::shape::TriMesh;
 use rustc_hash::FxHashSet;
-use sbbk_core::surface::{Place, RayTriangles, hangs, is_flat, place, sides};
+use sbbk_core::surface::{Place, hangs, is_flat, place, sides};
 
 use super::flags::TriangleFlags;
-use super::rays::MeshRays;
 
 /// The twins of the edges of a triangle, and its flags.
 #[derive(Debug, Default)]
@@ -59,52 +59,59 @@ impl Neighbour {
     }
 }
 
+/// Triangles at a corner beyond which these are a crowd. Higher: fans take longer. Lower: crowds of both ends of an edge
+/// take longer.
+const CROWD: usize = 64;
+
+/// Returns the triangles whose boxes hold both ends of an edge, and others at one end. Looks at an end without a crowd.
+fn near_edge(mesh: &TriMesh, ends: [Vector; 2]) -> Vec<u32> {
+    for end in ends {
+        let at = Aabb::new(end, end);
+        let near: ArrayVec<u32, CROWD> = mesh.bvh().intersect_aabb(&at).take(CROWD).collect();
+        if !near.is_full() {
+            return near.to_vec();
+        }
+    }
+    let [one, other] = ends;
+    mesh.bvh().intersect_aabb(&Aabb::new(one.min(other), one.max(other))).collect()
+}
+
 /// Returns true if a triangle has a double that is wound the other way.
 pub(super) fn is_two_sided(mesh: &TriMesh, triangle: u32) -> bool {
-    let rays = MeshRays(mesh);
-    let [a, b, c] = rays.corners(triangle);
+    let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
+    let [a, b, c] = corners(triangle);
     let backs = [[a, c, b], [c, b, a], [b, a, c]];
-    let mut is_two_sided = false;
-    rays.near(triangle, 0.0, &mut |other| {
-        is_two_sided = backs.contains(&rays.corners(other));
-        if is_two_sided { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    is_two_sided
+    near_edge(mesh, [a, b]).into_iter().any(|other| backs.contains(&corners(other)))
 }
 
 /// Returns the twins of the edges of a triangle, and whether it is a double. Vertices at one place are one vertex, and doubles
-/// have no neighbours, as in [`Surface`].
+/// have no neighbours, as in [`Surface`](sbbk_core::surface::Surface).
 fn twins(mesh: &TriMesh, triangle: u32) -> ([Option<u32>; 3], bool) {
     let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
     let own = corners(triangle);
-    let shares_edge = |other: &u32| {
-        let theirs = corners(*other);
-        own.into_iter().filter(|corner| theirs.contains(corner)).count() > 1
-    };
-    let bounds = mesh.triangle(triangle).local_aabb();
-    let near = mesh.bvh().intersect_aabb(&bounds);
-    let mut near: Vec<u32> = near.filter(shares_edge).collect();
-    near.sort_unstable();
-    let mut known = FxHashSet::default();
-    near.retain(|&other| sliver(mesh, other) != Some(true) && known.insert(places(corners(other))));
-    let is_first = near.contains(&triangle);
-    let (mut forward, mut backward, mut twins) = ([0; 3], [0; 3], [None; 3]);
-    for other in near {
-        let theirs = corners(other);
-        for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
-            let [a, b] = [own[i], own[(i + 1) % 3]];
-            let [c, d] = [theirs[j], theirs[(j + 1) % 3]];
-            if a == d && b == c {
-                backward[i] += 1;
-                twins[i] = Some(3 * other + j as u32);
-            } else if a == c && b == d {
-                forward[i] += 1;
-            }
-        }
-    }
-    let is_paired = |i: usize| is_first && forward[i] == 1 && backward[i] == 1;
-    let is_double = !is_first || sliver(mesh, triangle).is_some();
-    (std::array::from_fn(|i| twins[i].filter(|_| is_paired(i))), is_double)
+    let mut is_double = sliver(mesh, triangle).is_some();
+    let twins = [0, 1, 2].map(|i| {
+        let ends @ [a, b] = [own[i], own[(i + 1) % 3]];
+        let mut near = near_edge(mesh, ends);
+        near.retain(|&other| ends.iter().all(|end| corners(other).contains(end)));
+        near.sort_unstable();
+        let mut known = FxHashSet::default();
+        near.retain(|&other| {
+            sliver(mesh, other) != Some(true) && known.insert(places(corners(other)))
+        });
+        let is_first = near.contains(&triangle);
+        is_double |= !is_first;
+        let half_edges = near.iter().flat_map(|other| 3 * other..3 * other + 3);
+        let ends_of = |half_edge: u32| {
+            let (of, j) = (corners(half_edge / 3), half_edge as usize % 3);
+            [of[j], of[(j + 1) % 3]]
+        };
+        let forward = half_edges.clone().filter(|&other| ends_of(other) == ends).count();
+        let mut backward = half_edges.filter(|&other| ends_of(other) == [b, a]);
+        let twin = backward.next();
+        twin.filter(|_| a != b && is_first && forward == 1 && backward.next().is_none())
+    });
+    (twins, is_double)
 }
 
 /// Returns whether a sliver [hangs](hangs()). `None` for other triangles.
