@@ -236,7 +236,7 @@ mod tests {
     use oorandom::Rand32;
     use parry3d::shape::Cuboid;
 
-    /// Many triangles of these soups are points, segments or duplicates. Many edges have three triangles.
+    /// The soups have points, segments, duplicates, and edges with three triangles.
     #[test]
     fn local_twins_and_doubles_are_those_of_the_surface() {
         let (mut random, mut found, mut doubles, mut slivers) = (Rand32::new(1), 0, 0, 0);
