@@ -227,8 +227,7 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
     /// Sends a ray to the front of a triangle and another to the back, and tells the side between them. A ray from a face to the
     /// back may leave through a triangle that is wound the other way.
     fn sample(&self, triangle: u32, i: u32) -> Side {
-        let start = middle(&self.triangles.corners(triangle));
-        let Some(rays) = Rays::new(self, triangle, start, i, STEEP) else { return Side::Sheet };
+        let Some(rays) = Rays::from_middle(self, triangle, i, STEEP) else { return Side::Sheet };
         let leaves_turned = || rays.winding(1, |_| true).is_some_and(|back| back < 0);
         match rays.side_without_walls() {
             Side::Sheet if leaves_turned() => Side::Outer,
@@ -239,8 +238,7 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
     /// Like [`sample`](Self::sample), with rays of any slope. A place within the body is no hole, so the rays need not leave
     /// out walls there.
     fn sample_of_mesh(&self, triangle: u32, i: u32) -> Side {
-        let start = middle(&self.triangles.corners(triangle));
-        let Some(rays) = Rays::new(self, triangle, start, i, ANY) else { return Side::Sheet };
+        let Some(rays) = Rays::from_middle(self, triangle, i, ANY) else { return Side::Sheet };
         match rays.side(|_| true) {
             Side::Inner => Side::Inner,
             _ => rays.side_without_walls(),
@@ -338,8 +336,7 @@ pub fn is_surely_open(triangles: &impl RayTriangles) -> bool {
         (RayMesh::new(triangles, None, memo, WallLimit::MESH), Samples::of(triangles));
     let most = SAMPLES[0];
     let is_bare = |i: &u32| {
-        let start = |triangle| middle(&triangles.corners(triangle));
-        let rays = |triangle| Rays::new(&mesh, triangle, start(triangle), *i, ANY);
+        let rays = |triangle| Rays::from_middle(&mesh, triangle, *i, ANY);
         samples.triangle(*i).and_then(rays).is_some_and(|rays| rays.meet_nothing())
     };
     let mut open = (0..most).filter(is_bare).zip(1..);
@@ -451,6 +448,16 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         Some(Self { mesh, start, to_front, skipped, hits, is_exact })
     }
 
+    /// Rays number `i` from the middle of a triangle; `None` for one without an area.
+    fn from_middle(
+        mesh: &'a RayMesh<'a, T>,
+        triangle: u32,
+        i: u32,
+        choice: Choice,
+    ) -> Option<Self> {
+        Self::new(mesh, triangle, middle(&mesh.triangles.corners(triangle)), i, choice)
+    }
+
     /// Two opposite rays from a point; `None` for a point that is not finite.
     fn from_point(mesh: &'a RayMesh<'a, T>, start: DVec3) -> Option<Self> {
         let ways = (0..STEEP.of).map(|i| direction(i.into(), 0.0).into());
@@ -497,7 +504,7 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
 
     /// True if neither ray meets a triangle.
     fn meet_nothing(&self) -> bool {
-        [0, 1].map(|i| self.all_hits(i)).iter().all(|hits| hits.is_some_and(Hits::is_empty))
+        (0..2).all(|i| self.all_hits(i).is_some_and(Hits::is_empty))
     }
 
     /// True if the body is in front. Takes one ray.
