@@ -79,12 +79,12 @@ fn everyday_plan() -> EverydayPlan {
             (16, 1.0, TriMeshFlags::empty()),
             (16, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES),
         ],
-        bodies: 20,
-        steps: 40,
+        bodies: 10,
+        steps: 30,
         repeats: 1,
         cells: 64,
         world_cells: 64,
-        small_meshes: 300,
+        small_meshes: 100,
         deformable_cells: 48,
         heads: 8,
         query_cells: vec![24],
@@ -160,7 +160,7 @@ fn advice_fits_the_mesh() {
         (inside_out, SurfaceKind::InsideOut),
     ];
     for (mesh, kind) in &cases {
-        let advice = advise(&Subject::mesh(mesh), 30, &Progress::hidden());
+        let advice = advise(&Subject::mesh(mesh), 15, &Progress::hidden());
         let text = advice.to_string();
         assert_eq!((advice.kind, text.lines().count()), (*kind, 4), "{text}");
         assert!(advice.speeds().iter().all(|speed| *speed > 0.0), "{text}");

@@ -132,7 +132,7 @@ fn a_front_stays_bounded_and_tests_fewer_nodes_than_a_fresh_descent() {
     let mut front = Front::default();
     let mut largest_fresh = 0;
     let (mut tests, mut fresh_tests) = (DescentCounts::default(), DescentCounts::default());
-    for i in 0..3000 {
+    for i in 0..1000 {
         let t = 0.05 * i as f32;
         let rotation = Quat::from_rotation_x(0.044 * t) * Quat::from_rotation_y(0.028 * t);
         let pos12 = Pose3::from_parts(Vec3::new(1.9 * (0.013 * t).cos(), 0.0, 0.0), rotation);
