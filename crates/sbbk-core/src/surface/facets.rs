@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 use glamx::DVec3;
 
 use super::cones::MinimumCones;
-use super::slopes::{PlaceMemo, angle};
+use super::memo::PlaceMemo;
+use super::slopes::angle;
 use crate::contact::Feature;
 
 /// Triangles with their adjacency. Half-edge `3 t + i` runs from vertex `i` of triangle `t` to the next one.

@@ -5,7 +5,11 @@
 //! welded vertices, and derives from rays if the triangles bound a solid.
 
 mod cones;
+mod crowd;
+mod ends;
 mod facets;
+mod kinds;
+mod memo;
 mod one_ring;
 mod rays;
 mod sides;
@@ -17,10 +21,11 @@ mod twins;
 
 pub use cones::MinimumCones;
 pub use facets::Facets;
+pub use kinds::{SurfaceKind, is_surely_open, kind};
+pub use memo::PlaceMemo;
 pub use one_ring::Around;
 pub use rays::{RayTriangles, ends_within};
-pub use sides::{Side, SurfaceKind, is_surely_open, kind, side, winding_sign};
-pub use slopes::PlaceMemo;
+pub use sides::{Side, side, winding_sign};
 pub use spread::minimum_cones;
 pub use triangle::{area_vector, longest_side};
 pub use twins::{Place, hangs, is_flat, place, sides};
@@ -65,7 +70,7 @@ impl Surface {
             twins::find(vertices, triangles);
         let memo = &PlaceMemo::default();
         let mesh = sides::RayMesh::new(rays, components.as_ref(), memo, sides::WallLimit::MESH);
-        let kind = sides::of_samples(&mesh);
+        let kind = kinds::of_samples(&mesh);
         Self { twins, hubs, has_small_components, components, doubles, kind }
     }
 

@@ -6,11 +6,11 @@ use std::ops::ControlFlow;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
-use super::facets::{Facets, Wedge, half_edge, previous, visit_ring};
+use super::crowd::{Crowd, Found};
+use super::facets::{Facets, Wedge, half_edge, visit_ring};
+use super::memo::PlaceMemo;
 use super::sides::Side;
-use super::slopes::{
-    Bend, FLAT, Heights, LONG, PlaceMemo, RISE, RISE_TO_FACE, Signs, Slopes, angle,
-};
+use super::slopes::{Bend, FLAT, Heights, LONG, RISE, RISE_TO_FACE, Signs, Slopes, angle};
 use super::triangle::{area_vector, clip, longest_side, seam, touches};
 use crate::contact::Feature;
 use crate::contact::convex::{PointSupport, convex_contact};
@@ -29,10 +29,6 @@ pub struct Around<F> {
 /// Triangles near the point of an impact that are looked at. Higher: slow casts at the hub of a fan. Lower: casts
 /// along walls stop where many triangles meet.
 const CROWD: usize = 64;
-
-/// Distance from the ends of an edge at which other triangles are sought along the edge, as a share of its length. Higher: a T-junction near
-/// an end makes a border. Lower: edges of slivers go on in their neighbours.
-const OFF_ENDS: f64 = 0.1;
 
 /// Share of the coordinates that rounding to f32 may open between triangles that touch. Higher: triangles across a gap count as
 /// touching. Lower: casts stop at T-junctions of a wall that they slide along.
@@ -153,60 +149,6 @@ impl<F: Facets> Around<F> {
         slopes.rise > most * most
     }
 
-    /// True if a surface ends at an edge or a vertex. A triangle there has an edge without a twin, along which no other triangle
-    /// goes on.
-    pub fn is_border(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {
-        match feature {
-            Feature::Edge(i) if self.facets.twin(3 * triangle + u32::from(i)).is_none() => {}
-            Feature::Vertex(_) => {}
-            _ => return false,
-        }
-        let place = self.place(triangle, feature, Some(place));
-        let (triangle, feature, ring) = self.first_of_ring(triangle, feature);
-        let find = || self.ends_at(triangle, feature, place);
-        PlaceMemo::is_border(self.facets.memo(), ring, place, find)
-    }
-
-    /// Returns true if an edge without a twin is a border at a place, or if one at a vertex is. Also returns the number of
-    /// triangles there.
-    fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> (bool, usize) {
-        let (mut borders, mut count) = (ArrayVec::<(u32, f64), 2>::new(), 0);
-        let first = half_edge(triangle, feature);
-        if let Feature::Edge(_) = feature {
-            let [start, end] = [0, 1].map(|i| self.corner(first, i));
-            let at = (place - start).dot(end - start) / start.distance_squared(end);
-            borders.push((first, at.clamp(OFF_ENDS, 1.0 - OFF_ENDS)));
-        } else {
-            self.visit(triangle, feature, |Wedge { half_edge, .. }| {
-                let sides = [(half_edge, OFF_ENDS), (previous(half_edge), 1.0 - OFF_ENDS)];
-                let is_alone = |(side, _): &(u32, f64)| self.facets.twin(*side).is_none();
-                sides.into_iter().filter(is_alone).for_each(|side| _ = borders.try_push(side));
-                count += 1;
-                ControlFlow::Continue(())
-            });
-        }
-        let ends = |(side, at): (u32, f64)| {
-            let [start, end, third] = each(|i| self.corner(side, i));
-            let place = start.lerp(end, at);
-            let own = [start, end, third].map(|corner| corner - place);
-            let mut ends = true;
-            self.visit_touching(side / 3, place, usize::MAX, |other, corners, _| {
-                let is_double = own.iter().all(|corner| corners.contains(corner));
-                ends &= other == side / 3 || is_double;
-                count += 1;
-                ControlFlow::Continue(())
-            });
-            ends
-        };
-        (borders.into_iter().any(ends), count)
-    }
-
-    /// Returns true if the surface ends at the highest corner of a triangle along a unit axis. `heights` has the heights of the corners.
-    pub fn ends_along(&self, triangle: u32, heights: [f64; 3], axis: DVec3) -> bool {
-        let highest = (0..3).max_by(|&a, &b| heights[a].total_cmp(&heights[b])).unwrap_or_default();
-        self.is_local_minimum(triangle, Feature::Vertex(highest as u8), axis, None)
-    }
-
     /// True if the body is on one side of the triangle, and nothing on the other.
     pub fn is_solid(&self) -> bool {
         self.side.outward().is_some()
@@ -268,16 +210,16 @@ impl<F: Facets> Around<F> {
         signs.lead_in().unwrap_or_else(|| {
             let mut heights = Heights::default();
             self.visit(triangle, feature, |wedge| {
-                heights.add(wedge.area(), wedge.angle(feature), direction);
+                heights.add(wedge.area(), wedge.angle(feature));
                 ControlFlow::Continue(())
             });
-            self.outward() * heights.sum() < 0.0
+            self.outward() * heights.along(direction) < 0.0
         })
     }
 
     /// Returns the first triangle of a vertex's one-ring, and a number of the ring. Sums in the order of a ring that
     /// starts there have the same bits for all triangles of the ring.
-    fn first_of_ring(&self, triangle: u32, feature: Feature) -> (u32, Feature, u32) {
+    pub(super) fn first_of_ring(&self, triangle: u32, feature: Feature) -> (u32, Feature, u32) {
         if !matches!(feature, Feature::Vertex(_)) {
             return (triangle, feature, PlaceMemo::SHORT);
         }
@@ -311,55 +253,67 @@ impl<F: Facets> Around<F> {
     ) -> Slopes {
         let place = self.place(triangle, feature, place);
         let (triangle, feature, ring) = self.first_of_ring(triangle, feature);
-        let key = (ring, self.is_solid());
-        PlaceMemo::slopes(self.facets.memo(), key, place, direction, |direction| {
-            self.find_slopes(triangle, feature, direction, place)
-        })
+        let (memo, key) = (self.facets.memo(), (ring, self.is_solid()));
+        if let Some(crowd) = memo.and_then(|memo| memo.crowd(key, place)) {
+            return crowd.slopes(direction);
+        }
+        let mut slopes = Slopes::default();
+        let add = |way| slopes.add(way, direction);
+        let Found { heights, count, .. } = self.visit_ways(triangle, feature, place, add);
+        if count <= LONG {
+            return Slopes { height: heights.along(direction), ..slopes };
+        }
+        let crowd = self.crowd(triangle, feature, place);
+        let slopes = crowd.slopes(direction);
+        memo.inspect(|memo| memo.keep_crowd(key, place, crowd));
+        slopes
     }
 
-    fn find_slopes(
+    /// Returns the surface at a place where many triangles meet.
+    fn crowd(&self, triangle: u32, feature: Feature, place: DVec3) -> Crowd {
+        let mut ways = Vec::new();
+        let found = self.visit_ways(triangle, feature, place, |way| ways.push(way));
+        let mut bend = Bend::from(found.area);
+        ways.iter().for_each(|way| bend.add(*way));
+        Crowd::new(ways, found.heights, bend)
+    }
+
+    /// Calls `visit` with the ways from a place to the corners of all triangles there.
+    fn visit_ways(
         &self,
         triangle: u32,
         feature: Feature,
-        direction: DVec3,
         place: DVec3,
-    ) -> (Slopes, usize) {
-        let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
-        let (mut count, mut area) = (0, DVec3::ZERO);
+        mut visit: impl FnMut(DVec3),
+    ) -> Found {
+        let mut found = Found::default();
+        // Triangles of a one-ring have one winding.
+        let outward = self.outward_of(triangle);
         let is_closed = self.visit(triangle, feature, |wedge| {
-            wedge.edges.into_iter().for_each(|edge| slopes.add(edge, direction));
-            heights.add(wedge.area(), wedge.angle(feature), direction);
-            area += wedge.area();
-            count += 1;
+            wedge.edges.into_iter().for_each(&mut visit);
+            found.add(outward * wedge.area(), wedge.angle(feature));
             ControlFlow::Continue(())
         });
-        if count > LONG {
-            let mut bend = Bend::from(area);
-            self.visit(triangle, feature, |Wedge { edges, .. }| {
-                edges.into_iter().for_each(|edge| bend.add(edge));
-                ControlFlow::Continue(())
-            });
-            slopes.bend = Some(bend.doubled());
+        if self.facets.is_whole(triangle, feature) {
+            return found;
         }
-        // Triangles of a one-ring have one winding.
-        let mut height = self.outward_of(triangle) * heights.sum();
-        if !self.facets.is_whole(triangle, feature) {
-            let mut all = Heights::default();
-            self.visit_touching(triangle, place, usize::MAX, |other, corners, ends| {
-                let outward = self.outward_of(other);
-                // Walls within are no surface.
-                if outward != 0.0 {
-                    let ends: ArrayVec<DVec3, 3> = ends.collect();
-                    ends.iter().for_each(|end| slopes.add(*end, direction));
-                    let angle = if let [u, v] = ends[..] { angle(u, v) } else { PI };
-                    all.add(outward * area_vector(corners), angle, direction);
-                    count += 1;
-                }
-                ControlFlow::Continue(())
-            });
-            height = if is_closed { height } else { all.sum() };
-        }
-        (Slopes { height, ..slopes }, count)
+        let mut all = Found::default();
+        self.visit_touching(triangle, place, usize::MAX, |other, corners, ends| {
+            let outward = self.outward_of(other);
+            // Walls within are no surface.
+            if outward != 0.0 {
+                let ends: ArrayVec<DVec3, 3> = ends.collect();
+                ends.iter().copied().for_each(&mut visit);
+                let angle = if let [u, v] = ends[..] { angle(u, v) } else { PI };
+                let area = outward * area_vector(corners);
+                // Triangles of a sheet have either winding.
+                let is_turned = !self.is_solid() && area.dot(all.area) < 0.0;
+                all.add(if is_turned { -area } else { area }, angle);
+            }
+            ControlFlow::Continue(())
+        });
+        let count = found.count + all.count;
+        Found { count, ..if is_closed { found } else { all } }
     }
 
     /// Returns true if the surface at a point rises more than it bends there.
@@ -391,7 +345,7 @@ impl<F: Facets> Around<F> {
     }
 
     /// Returns a vertex, or a point of an edge.
-    fn place(&self, triangle: u32, feature: Feature, place: Option<DVec3>) -> DVec3 {
+    pub(super) fn place(&self, triangle: u32, feature: Feature, place: Option<DVec3>) -> DVec3 {
         let first = half_edge(triangle, feature);
         match (feature, place) {
             (Feature::Vertex(_), _) => self.corner(first, 0),
@@ -402,7 +356,7 @@ impl<F: Facets> Around<F> {
 
     /// Calls `visit` for each triangle that touches a place. `visit` also gets the three corners, seen from the place, and
     /// the corners that are not at the place. Ends after `most` triangles near the place, or if `visit` breaks.
-    fn visit_touching(
+    pub(super) fn visit_touching(
         &self,
         triangle: u32,
         place: DVec3,
@@ -449,7 +403,7 @@ impl<F: Facets> Around<F> {
 
     /// Visits the one-ring of an edge or a vertex, as [`visit_ring`] does.
     #[inline(always)]
-    fn visit(
+    pub(super) fn visit(
         &self,
         triangle: u32,
         feature: Feature,
@@ -459,7 +413,7 @@ impl<F: Facets> Around<F> {
     }
 
     #[inline(always)]
-    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
+    pub(super) fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         self.facets.corner(half_edge, i)
     }
 }
@@ -491,9 +445,9 @@ mod tests {
                 let vertex = Feature::Vertex(0);
                 let direction = DVec3::new(0.1, 0.2, 0.9);
                 let (first, vertex, _) = ring.first_of_ring(triangle, vertex);
-                let (slopes, count) = ring.find_slopes(first, vertex, direction, DVec3::ZERO);
-                let Slopes { rise, height, bend } = slopes;
-                (rise, height, bend, count)
+                let Slopes { rise, height, bend } =
+                    ring.crowd(first, vertex, DVec3::ZERO).slopes(direction);
+                (rise, height, bend)
             };
             assert!((0..sides).all(|triangle| slopes(triangle) == slopes(0)), "{sides} sides");
         }
