@@ -29,7 +29,7 @@ const EDGE_ON: f64 = 1.0e-5;
 const SAME_POINT: f64 = 1.0e-6;
 
 /// Points that a manifold of two triangles can have.
-pub(super) const MANIFOLD_CAPACITY: usize = 13;
+const MANIFOLD_CAPACITY: usize = 13;
 
 /// The contact points of two triangles.
 pub type ManifoldPoints = ArrayVec<ManifoldPoint, MANIFOLD_CAPACITY>;

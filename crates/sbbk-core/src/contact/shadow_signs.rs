@@ -147,7 +147,7 @@ fn after(lanes: f64x4) -> f64x4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::clip::MANIFOLD_CAPACITY;
+    use crate::contact::ManifoldPoints;
     use proptest::prelude::*;
 
     proptest! {
@@ -185,7 +185,7 @@ mod tests {
                 .fold(0, |m, (i, j)| m | 1 << (3 * j + i));
             prop_assert_eq!(signs.crossings(), crossings);
             let found = inside[0].count_ones() + inside[1].count_ones() + crossings.count_ones();
-            prop_assert!(count > 3 || (found as usize) < MANIFOLD_CAPACITY);
+            prop_assert!(count > 3 || (found as usize) < ManifoldPoints::new().capacity());
         }
     }
 }

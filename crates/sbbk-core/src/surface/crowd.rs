@@ -22,7 +22,7 @@ pub(super) struct Crowd {
 }
 
 impl Crowd {
-    /// The surface with some ways to corners. `bend` is that of the ways.
+    /// The surface with some ways to corners, their heights, and their bend.
     pub(super) fn new(mut ways: Vec<DVec3>, heights: Heights, bend: Bend) -> Self {
         ways.iter_mut().for_each(|way| *way = way.normalize_or_zero());
         let mut boxes = Vec::new();

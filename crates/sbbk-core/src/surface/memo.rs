@@ -19,7 +19,7 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: Eq + Hash, V: Clone> Memo<K, V> {
-    /// Returns the known answer of a key, or that of `find`. Keeps answers that took more than [`LONG`]
+    /// Returns the known answer of a key, or calls `find`. Keeps answers that took more than [`LONG`]
     /// triangles.
     fn answer(memo: Option<&Self>, key: K, find: impl FnOnce() -> (V, usize)) -> V {
         let known = memo.and_then(|memo| memo.get(&key));

@@ -53,6 +53,7 @@ mod hull;
 mod hull_surface;
 mod lanes;
 mod polytope;
+mod rim;
 mod search;
 mod segment;
 mod simplex;
