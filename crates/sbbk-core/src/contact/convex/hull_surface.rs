@@ -30,30 +30,22 @@ pub(super) struct HullSurface {
 }
 
 impl HullSurface {
-    /// Builds the surface from triangles that use all points. `None` if they are no closed convex
-    /// surface, counterclockwise from outside.
+    /// Builds the surface from the probable faces of the hull of some points. `None` if they are no closed
+    /// surface, counterclockwise from outside, or too far from convex.
     ///
     /// A surface without concave edges whose face count excludes handles is convex everywhere.
     pub fn from_triangles(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
         let slack = ROUNDING * size(points.iter().copied());
-        let neighbors = neighbors_of(points.len(), triangles)?;
+        let (neighbors, unused) = neighbors_of(points.len(), triangles)?;
         let mut surface = Self { neighbors, ..Self::empty() };
         for triangle in triangles {
             let corners = triangle.map(|corner| points[corner as usize]);
-            let (normal, squared) = thin_normal(corners)?;
-            let normal = normal / squared.sqrt();
-            let heights = corners.map(|corner| corner.dot(normal));
-            surface.planes.push((normal, heights[0].max(heights[1]).max(heights[2])));
+            surface.planes.push(plane(&corners)?);
             surface.corners.push(corners);
         }
-        for (&(normal, height), neighbors) in surface.planes.iter().zip(&surface.neighbors) {
-            for &neighbor in neighbors {
-                let corners = surface.corners.get(usize::from(neighbor))?;
-                let is_convex = corners.iter().all(|c| c.dot(normal) <= height + slack);
-                if !is_convex {
-                    return None;
-                }
-            }
+        surface.flip_until_convex(slack)?;
+        for point in unused {
+            surface.include(points[point], slack)?;
         }
         Some(surface)
     }
@@ -100,12 +92,23 @@ impl HullSurface {
     }
 }
 
-/// Returns the triangle across each edge: 255 at a border. `None` if triangles share a directed edge, leave out a point, or are
-/// not as many as a closed surface has.
-fn neighbors_of(count: usize, triangles: &[[u32; 3]]) -> Option<Vec<[u8; 3]>> {
+/// The normal of a face of a hull, and how far the face reaches along it. `None` if rounding would determine the normal.
+pub(super) fn plane(corners: &[DVec3; 3]) -> Option<(DVec3, f64)> {
+    let (normal, squared) = thin_normal(*corners)?;
+    let normal = normal / squared.sqrt();
+    let [a, b, c] = corners.map(|corner| corner.dot(normal));
+    Some((normal, a.max(b).max(c)))
+}
+
+/// Returns the triangle across each edge, and the points without triangles. `None` if triangles share a directed edge, have a
+/// border, or are not as many as a closed surface has.
+fn neighbors_of(
+    count: usize,
+    triangles: &[[u32; 3]],
+) -> Option<(Vec<[u8; 3]>, impl Iterator<Item = usize>)> {
     const NONE: u8 = u8::MAX;
-    let is_closed = (4..=POINTS).contains(&count) && triangles.len() == 2 * count - 4;
-    if !is_closed || triangles.as_flattened().iter().any(|&corner| corner as usize >= count) {
+    let corners = triangles.as_flattened();
+    if count > POINTS || corners.iter().any(|&corner| corner as usize >= count) {
         return None;
     }
     let edges = |triangle: &[u32; 3]| {
@@ -125,8 +128,11 @@ fn neighbors_of(count: usize, triangles: &[[u32; 3]]) -> Option<Vec<[u8; 3]>> {
         }
     }
     let across = |triangle: &[u32; 3]| edges(triangle).map(|[from, to]| at_edge[to * count + from]);
-    let are_all_used = is_used[..count].iter().all(|is_used| *is_used);
-    are_all_used.then(|| triangles.iter().map(across).collect())
+    let neighbors: Vec<[u8; 3]> = triangles.iter().map(across).collect();
+    let unused = (0..count).filter(move |point| !is_used[*point]);
+    let is_closed = triangles.len() + 4 == 2 * (count - unused.clone().count())
+        && !neighbors.as_flattened().contains(&NONE);
+    is_closed.then_some((neighbors, unused))
 }
 
 /// The largest coordinate, or a bit more.

@@ -50,6 +50,7 @@ mod depth;
 mod faces;
 mod feature;
 mod hull;
+mod hull_flips;
 mod hull_surface;
 mod lanes;
 mod polytope;
