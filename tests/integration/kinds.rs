@@ -11,9 +11,7 @@ use std::sync::OnceLock;
 pub struct Kind {
     pub name: String,
     pub shapes: [SharedShape; 2],
-    /// False if every query makes its contacts anew.
-    pub keeps_candidates: bool,
-    /// True if a mesh may deform.
+    /// True if a mesh may deform, so every query makes its contacts anew.
     pub is_soft: bool,
 }
 
@@ -24,8 +22,7 @@ impl Kind {
             .iter()
             .filter_map(|shape| shape.as_trimesh())
             .any(|mesh| mesh.flags().contains(TriMeshFlags::DEFORMABLE));
-        let keeps_candidates = !is_soft && shapes[1].as_ball().is_none();
-        Self { name: name.into(), shapes, keeps_candidates, is_soft }
+        Self { name: name.into(), shapes, is_soft }
     }
 
     pub fn question(&self, pose: Pose) -> Question<'_> {

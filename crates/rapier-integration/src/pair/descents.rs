@@ -234,7 +234,7 @@ impl TriangleShapes<'_> {
     ) {
         let moving = self.moving();
         let frame = FieldFrame::new(&field, moving.placement(self.pose), margin);
-        let leaves = FieldLeaves::new(&frame, moving.ball.centre, mesh.magnitude());
+        let leaves = FieldLeaves::new(&frame, moving.body.ball.centre, mesh.magnitude());
         near.clear();
         near.extend(mesh.near(|node| frame.meets(node, ())));
         for triangles in near.chunks(BATCH) {

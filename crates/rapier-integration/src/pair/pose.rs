@@ -1,7 +1,6 @@
 use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
-use sbbk_core::traverse::Placement;
-use sbbk_core::volumes::Sphere;
+use sbbk_core::traverse::{MovingBody, Placement};
 
 /// Share by which a length may be greater in another frame: quaternions in f32 are not of unit length. Higher: more steps of
 /// casts. Lower: impacts are missed.
@@ -52,8 +51,7 @@ impl PairPose {
 /// The shape of a pair whose motion limits how long candidates serve.
 #[derive(Copy, Clone)]
 pub(crate) struct Moving {
-    /// A ball around the shape, in the frame of the shape.
-    pub(super) ball: Sphere,
+    pub(super) body: MovingBody,
     /// 0 for shape 1, 1 for shape 2.
     pub(super) shape: usize,
 }

@@ -63,7 +63,8 @@ pub(crate) trait PairQuery {
     /// Begins a query: forgets what the last one left in the memory of the thread.
     fn begin(&self, _scratch: &mut Self::Scratch) {}
 
-    /// Adds all contacts at once if these cost less than keeping candidates. Returns true if so.
+    /// Adds all contacts at once, for a query in fast motion whose candidates serve no other one. Returns false
+    /// if that costs more than candidates.
     fn contacts_without_candidates(
         &mut self,
         _counts: &mut DescentCounts,
@@ -254,8 +255,8 @@ impl<H> CandidateMemory<H> {
     /// note of the placement.
     pub(super) fn is_calm(&mut self, pose: &PairPose) -> bool {
         let Some(Calm { moving, placement, prediction, rest }) = &self.calm else { return false };
-        let (now, ball) = (moving.placement(pose), moving.ball);
-        let motion = now.motion_bound(placement, ball.centre, ball.radius);
+        let now = moving.placement(pose);
+        let motion = moving.body.motion(now, placement);
         let is_calm = pose.prediction == *prediction && motion < *rest;
         if is_calm {
             self.slack.note_placement(now);
@@ -267,7 +268,7 @@ impl<H> CandidateMemory<H> {
     pub(super) fn note_calm(&mut self, pose: &PairPose, moving: Moving, reach: Real, calm: f64) {
         let (placement, PairPose { prediction, .. }) = (*moving.placement(pose), *pose);
         let reach = reach.max(prediction);
-        let rest = calm.min(self.slack.rest(moving.ball, &placement, reach));
+        let rest = calm.min(self.slack.rest(moving.body, &placement, reach));
         let calm = Calm { moving, placement, prediction, rest };
         self.calm = (rest > 0.0).then_some(calm);
     }

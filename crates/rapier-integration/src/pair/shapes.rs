@@ -12,6 +12,7 @@ use parry3d::shape::{CompositeShapeRef, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact, contact_from};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{self, Around, Facets, MinimumCones, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::traverse::MovingBody;
 use sbbk_core::tree::Tree;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
@@ -118,14 +119,15 @@ impl TriangleShapes<'_> {
     /// Returns the body whose motion limits how long candidates serve: the smaller one.
     pub(super) fn moving(&self) -> Moving {
         let smaller = 1 - self.larger;
-        Moving { ball: self[smaller].ball(), shape: smaller }
+        let body = MovingBody { ball: self[smaller].ball(), is_ball: false };
+        Moving { body, shape: smaller }
     }
 
     /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one, if that is more than
     /// `margin`.
     pub(super) fn clearance(&self, margin: Real) -> Option<Real> {
         let [larger, _] = [self[self.larger].view()?, self[1 - self.larger].view()?];
-        let Sphere { centre, radius } = self.moving().ball;
+        let Sphere { centre, radius } = self.moving().body.ball;
         let placed = self.pose.in_other(1 - self.larger, centre);
         let offset = self.pose.pos12.translation.abs().max_element();
         let size = larger.magnitude() + centre.abs().max_element() + radius + offset;

@@ -81,19 +81,20 @@ fn update_contacts<Q: PairQuery>(
 ) -> QueryOutcome {
     contacts.clear();
     query.begin(scratch);
-    if query.contacts_without_candidates(counts, scratch, contacts) {
-        memory.forget();
-        return QueryOutcome::Descended;
-    }
     let (moving, reach) = (query.moving(), query.reach());
     let had_none = !memory.slack.is_new() && memory.candidates.is_empty();
-    let plan = memory.slack.plan(moving.ball, moving.placement(pose), reach, Q::SLACK);
+    let plan = memory.slack.plan(moving.body, moving.placement(pose), reach, Q::SLACK);
     let (outcome, margin) = match plan {
         SlackPlan::Reuse { margin } => (QueryOutcome::Reused, margin),
         SlackPlan::Descend { margin } => {
             if let Some(clearance) = had_none.then(|| query.clearance(margin)).flatten() {
                 memory.slack.note_clear(clearance);
                 (QueryOutcome::Apart, clearance)
+            } else if margin == reach
+                && query.contacts_without_candidates(counts, scratch, contacts)
+            {
+                memory.candidates.clear();
+                return QueryOutcome::Descended;
             } else {
                 memory.replace(|found| query.descend(margin, counts, scratch, found));
                 (QueryOutcome::Descended, margin)

@@ -31,5 +31,5 @@ pub(crate) use gaps::{SignedGaps, within};
 pub(crate) use overlap::{OrderedOverlap, Overlap};
 pub use placement::Placement;
 pub(crate) use side::NodeLanes;
-pub use slack::{Slack, SlackLimits, SlackPlan};
+pub use slack::{MovingBody, Slack, SlackLimits, SlackPlan};
 pub(crate) use toward::Toward;

@@ -93,13 +93,15 @@ impl Placement {
     pub fn motion_bound(&self, earlier: &Self, centre: Vec3, radius: f32) -> f64 {
         let (centre, radius) = (centre.as_dvec3(), f64::from(radius));
         let turn = self.rotation - earlier.rotation;
-        let frobenius_squared = turn.x_axis.length_squared()
-            + turn.y_axis.length_squared()
-            + turn.z_axis.length_squared();
-        let spectral = (0.5 * frobenius_squared).sqrt();
+        let spectral = || {
+            let axes = [turn.x_axis, turn.y_axis, turn.z_axis];
+            let [x, y, z] = axes.map(DVec3::length_squared);
+            (0.5 * (x + y + z)).sqrt()
+        };
+        let spin = if radius == 0.0 { 0.0 } else { spectral() * radius };
         let shift = turn * centre + (self.translation - earlier.translation);
-        let magnitude = centre.length() + radius + self.translation.length();
-        spectral * radius + shift.length() + 1e-14 * magnitude
+        let magnitude = (centre.abs() + self.translation.abs()).element_sum() + radius;
+        spin + shift.length() + 1e-14 * magnitude
     }
 }
 

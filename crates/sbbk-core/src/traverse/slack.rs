@@ -39,6 +39,23 @@ impl SlackLimits {
     pub const TRIANGLES: Self = Self { steps: 8.0, greatest: 1.0 };
 }
 
+/// The body of a pair whose motion limits how long candidates serve.
+#[derive(Copy, Clone, Debug)]
+pub struct MovingBody {
+    /// A ball around the body, in the body's frame.
+    pub ball: Sphere,
+    /// True if the body is this ball, whose spin moves no surface.
+    pub is_ball: bool,
+}
+
+impl MovingBody {
+    /// An upper bound of the motion of the body's surface from an earlier placement.
+    pub fn motion(&self, now: &Placement, earlier: &Placement) -> f64 {
+        let radius = if self.is_ball { 0.0 } else { self.ball.radius };
+        now.motion_bound(earlier, self.ball.centre, radius)
+    }
+}
+
 /// Plans the queries of one pair: when to descend, and with which margin.
 ///
 /// The caller keeps the candidates. When a shape changes, it drops these and starts with a new
@@ -68,20 +85,20 @@ pub enum SlackPlan {
 }
 
 impl Slack {
-    /// Plans a query and stores its placement, in constant time. The moving body is inside `ball`
-    /// of its own frame, which is at `placement`.
+    /// Plans a query and stores its placement, in constant time. The frame of the moving body is at
+    /// `placement`.
     ///
     /// If the placement or the prediction distance is not finite, plans a descent without slack.
     pub fn plan(
         &mut self,
-        ball: Sphere,
+        body: MovingBody,
         placement: &Placement,
         prediction: f32,
         limits: SlackLimits,
     ) -> SlackPlan {
-        let motion_since =
-            |then: &Placement| placement.motion_bound(then, ball.centre, ball.radius);
-        let step = self.last.replace(*placement).map(|last| motion_since(&last));
+        let motion_since = |then: &Placement| body.motion(placement, then);
+        let step = self.last.as_ref().map(motion_since);
+        self.last = Some(*placement);
         self.travel += step.unwrap_or(0.0);
         if let Some((then, margin)) = self.descent {
             let reach = f64::from(prediction) + motion_since(&then);
@@ -90,7 +107,7 @@ impl Slack {
             }
         }
         // The first query gets no slack: its motion is unknown.
-        let unit = f64::from(prediction).min(SMALL * f64::from(ball.radius));
+        let unit = f64::from(prediction).min(SMALL * f64::from(body.ball.radius));
         let slack = step.map_or(0.0, |step| slack(step, unit, limits));
         let wide = prediction + slack as f32;
         let margin = if wide.is_finite() { wide } else { prediction };
@@ -110,10 +127,9 @@ impl Slack {
     }
 
     /// Returns the motion since the last query for which the candidates of the last descent still serve; 0 without any.
-    pub fn rest(&self, ball: Sphere, placement: &Placement, reach: f32) -> f64 {
+    pub fn rest(&self, body: MovingBody, placement: &Placement, reach: f32) -> f64 {
         self.descent.map_or(0.0, |(then, margin)| {
-            let motion = placement.motion_bound(&then, ball.centre, ball.radius);
-            f64::from(margin) - f64::from(reach) - motion
+            f64::from(margin) - f64::from(reach) - body.motion(placement, &then)
         })
     }
 

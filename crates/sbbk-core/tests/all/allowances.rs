@@ -311,13 +311,14 @@ fn check_field(tree: &Tree, placement: &Placement, margin: f32, count: usize) {
 #[test]
 fn slack_stays_finite() {
     let ball = Sphere { centre: Vec3::ZERO, radius: 1.0 };
+    let body = MovingBody { ball, is_ball: false };
     let placement = Placement::new(&Pose3::IDENTITY);
     for prediction in [2.0e19, 3.0e38, f32::MAX] {
         let mut slack = Slack::default();
         for _ in 0..3 {
             let limits = SlackLimits { steps: 16.0, greatest: 8.0 };
             let (SlackPlan::Descend { margin } | SlackPlan::Reuse { margin }) =
-                slack.plan(ball, &placement, prediction, limits);
+                slack.plan(body, &placement, prediction, limits);
             assert!(margin.is_finite() && margin >= prediction);
         }
     }

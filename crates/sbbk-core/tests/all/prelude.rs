@@ -7,8 +7,8 @@ pub use sbbk_core::leaf::LeafTest;
 pub use sbbk_core::query::{FoundPair, SearchScratch};
 pub use sbbk_core::surface::{Around, Facets, PlaceMemo, Side, SurfaceKind};
 pub use sbbk_core::traverse::{
-    DescentCounts, DescentScratch, PairFrame, Placement, Slack, SlackLimits, SlackPlan, TestedBox,
-    descend,
+    DescentCounts, DescentScratch, MovingBody, PairFrame, Placement, Slack, SlackLimits, SlackPlan,
+    TestedBox, descend,
 };
 pub use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Node, Tree};
 pub use sbbk_core::volumes::{Aabb, Kdop, SLABS, Sphere, directions};

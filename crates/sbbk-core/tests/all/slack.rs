@@ -4,6 +4,8 @@ use crate::prelude::*;
 
 const BALL: Sphere = Sphere { centre: Vec3::new(0.3, -0.2, 0.1), radius: 0.7 };
 
+const BODY: MovingBody = MovingBody { ball: BALL, is_ball: false };
+
 /// Points of frame 1, and points of frame 2 in [`BALL`].
 struct Points([Vec<Vec3>; 2]);
 
@@ -12,6 +14,11 @@ impl Points {
         let still = (0..40).map(|_| random.vector(1.5)).collect();
         let in_ball = |_| BALL.centre + random.vector(1.0).normalize_or_zero() * BALL.radius;
         Self([still, (0..40).map(in_ball).collect()])
+    }
+
+    /// Points of frame 1, and the middle of [`BALL`].
+    fn around_ball(random: &mut Random) -> Self {
+        Self([Self::random(random).0[0].clone(), vec![BALL.centre]])
     }
 
     /// The distances of all pairs of points that are at most `margin` apart.
@@ -31,8 +38,11 @@ impl Points {
 fn candidates_are_complete_while_they_are_reused() {
     let mut random = Random(61);
     let (mut reused, mut skipped, mut found) = (0, 0, 0);
-    for walk in 0..60 {
-        let points = Points::random(&mut random);
+    for walk in 0..90 {
+        let is_ball = walk % 3 == 0;
+        let body = MovingBody { ball: BALL, is_ball };
+        let points =
+            if is_ball { Points::around_ball(&mut random) } else { Points::random(&mut random) };
         let of_shapes = SlackLimits { steps: 16.0, greatest: 8.0 };
         let limits = [SlackLimits::TRIANGLES, of_shapes][walk % 2];
         let (mut slack, mut pose) = (Slack::default(), random.pose(0.5));
@@ -48,7 +58,7 @@ fn candidates_are_complete_while_they_are_reused() {
             }
             let placement = Placement::new(&pose);
             let expected = points.within(&placement, prediction.into());
-            match slack.plan(BALL, &placement, prediction, limits) {
+            match slack.plan(body, &placement, prediction, limits) {
                 SlackPlan::Descend { margin } => {
                     assert!(margin >= prediction);
                     assert_eq!(slack.travel(), 0.0);
@@ -82,16 +92,32 @@ fn candidates_are_complete_while_they_are_reused() {
     assert!(reused > 5000 && skipped > 20_000 && found > 4000, "{reused}, {skipped}, {found}");
 }
 
+/// A ball that spins in place moves nothing, so its candidates serve for ever.
+#[test]
+fn a_spinning_ball_keeps_its_candidates() {
+    for (is_ball, is_reused) in [(true, true), (false, false)] {
+        let body = MovingBody { ball: Sphere { centre: Vec3::ZERO, radius: 1.0 }, is_ball };
+        let mut slack = Slack::default();
+        let mut plans = (0..10).map(|i| {
+            let turn = Quat::from_rotation_x(0.5 * i as f32);
+            let placement = Placement::new(&Pose3::from_rotation(turn));
+            slack.plan(body, &placement, 0.02, SlackLimits::TRIANGLES)
+        });
+        let last = plans.by_ref().skip(2).all(|plan| matches!(plan, SlackPlan::Reuse { .. }));
+        assert_eq!(last, is_reused);
+    }
+}
+
 /// The margin of the second of two queries, the ball shifted by `step` between them, and whether a
 /// third one there reuses the candidates.
 fn margin_after(step: f32, prediction: f32) -> (f32, bool) {
     let mut slack = Slack::default();
     let at = |x: f32| Placement::new(&Pose3::translation(x, 0.0, 0.0));
-    let first = slack.plan(BALL, &at(0.0), prediction, SlackLimits::TRIANGLES);
+    let first = slack.plan(BODY, &at(0.0), prediction, SlackLimits::TRIANGLES);
     assert_eq!(first, SlackPlan::Descend { margin: prediction }, "a first query looks farther");
-    match slack.plan(BALL, &at(step), prediction, SlackLimits::TRIANGLES) {
+    match slack.plan(BODY, &at(step), prediction, SlackLimits::TRIANGLES) {
         SlackPlan::Descend { margin } => {
-            let again = slack.plan(BALL, &at(step), prediction, SlackLimits::TRIANGLES);
+            let again = slack.plan(BODY, &at(step), prediction, SlackLimits::TRIANGLES);
             (margin, again == SlackPlan::Reuse { margin })
         }
         plan => panic!("{plan:?} without a descent to reuse"),
@@ -138,11 +164,11 @@ fn queries_that_are_not_finite_are_descents() {
         for (placement, prediction) in [(&bad_pose, 0.02), (&good, broken)] {
             let mut slack = Slack::default();
             for _ in 0..2 {
-                slack.plan(BALL, &good, 0.02, SlackLimits::TRIANGLES);
+                slack.plan(BODY, &good, 0.02, SlackLimits::TRIANGLES);
             }
-            let again = slack.clone().plan(BALL, &good, 0.02, SlackLimits::TRIANGLES);
+            let again = slack.clone().plan(BODY, &good, 0.02, SlackLimits::TRIANGLES);
             assert!(matches!(again, SlackPlan::Reuse { .. }), "{again:?}");
-            let plan = slack.plan(BALL, placement, prediction, SlackLimits::TRIANGLES);
+            let plan = slack.plan(BODY, placement, prediction, SlackLimits::TRIANGLES);
             // No pair is within a distance below zero, so any candidates are complete.
             if prediction == f32::NEG_INFINITY {
                 assert!(matches!(plan, SlackPlan::Reuse { .. }));
@@ -150,7 +176,7 @@ fn queries_that_are_not_finite_are_descents() {
             }
             let SlackPlan::Descend { margin } = plan else { panic!("{plan:?}") };
             assert_eq!(margin.to_bits(), prediction.to_bits());
-            let next = slack.plan(BALL, &good, 0.02, SlackLimits::TRIANGLES);
+            let next = slack.plan(BODY, &good, 0.02, SlackLimits::TRIANGLES);
             assert!(matches!(next, SlackPlan::Descend { .. }), "{next:?}");
         }
     }

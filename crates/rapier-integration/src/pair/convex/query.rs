@@ -7,8 +7,9 @@ use std::thread::LocalKey;
 use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
+use parry3d::shape::Ball;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::traverse::{BoxTest, DescentCounts, SlackLimits, TestedBox};
+use sbbk_core::traverse::{BoxTest, DescentCounts, MovingBody, SlackLimits, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::contact::{Hit, PartContact, ball_contact, core_contact};
@@ -168,10 +169,12 @@ impl PairQuery for ConvexQuery<'_> {
 
     fn moving(&self) -> Moving {
         let (mesh, parts) = (self.pair.mesh.ball(), self.part_data.ball);
+        let is_ball = self.pair.is_ball();
         // The smaller body moves less when it rotates.
-        let is_mesh = mesh.radius <= parts.radius;
+        let is_mesh = mesh.radius <= parts.radius && !is_ball;
         let shape = usize::from(self.pair.mesh_place.is_second() == is_mesh);
-        Moving { ball: if is_mesh { mesh } else { parts }, shape }
+        let ball = if is_mesh { mesh } else { parts };
+        Moving { body: MovingBody { ball, is_ball }, shape }
     }
 
     fn calm(&self) -> f64 {
@@ -190,34 +193,22 @@ impl PairQuery for ConvexQuery<'_> {
         scratch.parts.clear();
     }
 
-    /// Serves balls, whose contacts and box tests cost less than to keep candidates.
+    /// Serves balls, whose contacts cost less than a list of candidates.
     fn contacts_without_candidates(
         &mut self,
         counts: &mut DescentCounts,
         scratch: &mut ConvexScratch,
         contacts: &mut ContactList<PartContact>,
     ) -> bool {
-        let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
-        let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
-        let part = Part { pose: None, shape, cone: None };
-        let placed = self.placed(0, &part, scratch);
-        let (prediction, margin) = (self.pair.pose.prediction, self.reach());
-        let (radius, farthest) = (f64::from(ball.radius), f64::from(prediction));
-        triangles_near(placed, shape, mesh, margin, counts, |index| {
-            let corners = placed.in_part(mesh.corners(index));
-            if let Some(contact) = ball_contact(&corners, f64::from(margin) + radius)
-                && contact.distance - radius <= farthest
-            {
-                contacts.push((mesh_place.swap([index, 0]), PartContact::new(contact, &corners)));
-            }
+        let Parts::One(shape @ ConvexShape::Ball(ball)) = self.pair.parts else { return false };
+        let margin = self.reach();
+        let placed = self.placed(0, &Part { pose: None, shape, cone: None }, scratch);
+        triangles_near(placed, shape, &self.pair.mesh, margin, counts, |triangle| {
+            self.add_ball(triangle, ball, placed, margin.into(), contacts);
             ControlFlow::Continue(())
         });
         contacts.sort_unstable_by_key(|(subshapes, _)| *subshapes);
-        if let Some((triangle, contact)) = self.push_out(0, f64::INFINITY, scratch) {
-            contacts.clear();
-            contacts.push((mesh_place.swap([triangle, 0]), contact));
-        }
-        self.correct(contacts, scratch);
+        self.end_ball(scratch, contacts);
         true
     }
 
@@ -249,6 +240,16 @@ impl PairQuery for ConvexQuery<'_> {
     ) {
         if let Some(half_space) = self.pair.vertices_of() {
             self.add_vertices(half_space, candidates, limits, scratch, contacts);
+            return;
+        }
+        if let Parts::One(shape @ ConvexShape::Ball(ball)) = self.pair.parts {
+            let placed = self.placed(0, &Part { pose: None, shape, cone: None }, scratch);
+            for candidate in candidates.iter_mut().filter(|it| limits.may_touch(it)) {
+                let [triangle, _] = self.pair.mesh_place.swap(candidate.subshapes);
+                let distance = self.add_ball(triangle, ball, placed, limits.margin, contacts);
+                candidate.touches_at = distance + limits.travel;
+            }
+            self.end_ball(scratch, contacts);
             return;
         }
         for candidate in candidates {
@@ -296,6 +297,37 @@ impl PairQuery for ConvexQuery<'_> {
 }
 
 impl ConvexQuery<'_> {
+    /// Adds the contact of a ball and a triangle within the prediction distance. Returns a lower bound of
+    /// their distance, at most `margin`.
+    #[inline(always)]
+    fn add_ball(
+        &self,
+        triangle: u32,
+        ball: &Ball,
+        placed: &PlacedPart,
+        margin: f64,
+        contacts: &mut ContactList<PartContact>,
+    ) -> f64 {
+        let ConvexPair { ref mesh, mesh_place, pose, .. } = *self.pair;
+        let corners = placed.in_part(mesh.corners(triangle));
+        let radius = f64::from(ball.radius);
+        let Some(contact) = ball_contact(&corners, margin + radius) else { return margin };
+        let distance = contact.distance - radius;
+        if distance <= f64::from(pose.prediction) {
+            contacts.push((mesh_place.swap([triangle, 0]), PartContact::new(contact, &corners)));
+        }
+        distance
+    }
+
+    /// Replaces the contacts of a ball by its push-out, if it has one, and corrects the rest.
+    fn end_ball(&self, scratch: &mut ConvexScratch, contacts: &mut ContactList<PartContact>) {
+        if let Some((triangle, contact)) = self.push_out(0, f64::INFINITY, scratch) {
+            contacts.clear();
+            contacts.push((self.pair.mesh_place.swap([triangle, 0]), contact));
+        }
+        self.correct(contacts, scratch);
+    }
+
     /// Corrects ghosts, and removes contacts that lead past a border or that one way lifts over.
     fn correct(&self, contacts: &mut ContactList<PartContact>, scratch: &mut ConvexScratch) {
         scratch.dropped.removed.clear();
