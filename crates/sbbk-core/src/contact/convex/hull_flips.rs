@@ -55,8 +55,8 @@ impl HullSurface {
     fn flip(&mut self, face: usize, edge: usize) -> Option<()> {
         let [start, end] = [edge, NEXT[edge]].map(|i| self.corners[face][i]);
         let other = self.neighbors[face][edge];
-        let ([a, b, c], [_, bc, ca]) = self.from_corner(face as u8, start);
-        let ([_, _, d], [_, ad, db]) = self.from_corner(other, end);
+        let ([a, b, c], [_, bc, ca]) = self.at_corner(face as u8, start);
+        let ([_, _, d], [_, ad, db]) = self.at_corner(other, end);
         if ca == ad || bc == db {
             return None;
         }
@@ -69,7 +69,7 @@ impl HullSurface {
 
     /// Replaces a triangle by three with a common point. `None` if there would be too many.
     fn split(&mut self, face: u8, point: DVec3) -> Option<()> {
-        let ([a, b, c], [ab, bc, ca]) = self.from_corner(face, self.corners[usize::from(face)][0]);
+        let ([a, b, c], [ab, bc, ca]) = self.at_corner(face, self.corners[usize::from(face)][0]);
         let second = u8::try_from(self.corners.len()).ok()?;
         let third = second.checked_add(1).filter(|third| *third < u8::MAX)?;
         for _ in 0..2 {
@@ -86,7 +86,7 @@ impl HullSurface {
     }
 
     /// The corners and neighbours of a triangle, from one of its corners on.
-    fn from_corner(&self, face: u8, corner: DVec3) -> ([DVec3; 3], [u8; 3]) {
+    fn at_corner(&self, face: u8, corner: DVec3) -> ([DVec3; 3], [u8; 3]) {
         let first = self.edge_from(face, corner);
         let (face, order) = (usize::from(face), [first, NEXT[first], NEXT[NEXT[first]]]);
         (order.map(|i| self.corners[face][i]), order.map(|i| self.neighbors[face][i]))
