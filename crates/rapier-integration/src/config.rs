@@ -22,8 +22,8 @@ pub enum ContactDetail {
     /// A manifold for each pair of touching subshapes, as in stock Rapier. Contacts of two meshes, or of a mesh and a height
     /// field, are reduced if all are farther than a tenth of the smaller radius.
     Every,
-    /// Reduced contacts: a few manifolds of at most four points, which carry like all of them. The
-    /// deepest point is always among them, and the subshapes are those of the deepest contact. Pairs
+    /// Reduced contacts: a few manifolds of at most four points, which carry like all of them. They
+    /// have a deepest point, up to rounding. The subshapes are those of the deepest contact. Pairs
     /// with a ball or a deformable mesh have every contact.
     #[default]
     Patches,
@@ -132,7 +132,7 @@ impl SbbkConfig {
         with_count_queries: count_queries: bool,
     }
 
-    pub(crate) fn has_surfaces(&self) -> bool {
+    pub(crate) fn wants_surfaces(&self) -> bool {
         self.contact_set == ContactSet::Surfaces
     }
 
@@ -142,7 +142,7 @@ impl SbbkConfig {
 
     /// Returns true if convex shapes are pushed out of solids.
     pub(crate) fn leave_solids(&self) -> bool {
-        self.has_surfaces() && self.convex_leave_solids
+        self.wants_surfaces() && self.convex_leave_solids
     }
 
     pub(crate) fn build_options(&self) -> BuildOptions {

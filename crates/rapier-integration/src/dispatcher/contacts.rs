@@ -73,7 +73,7 @@ impl SbbkDispatcher {
                 let meshes = kinds.meshes.then_some([mesh1, mesh2])?;
                 let are_apart = || {
                     let two = TwoMeshes::new(meshes, pos12);
-                    let may_be_inside = || self.config.has_surfaces() && two.may_be_inside();
+                    let may_be_inside = || self.config.wants_surfaces() && two.may_be_inside();
                     two.are_apart(prediction) && !may_be_inside()
                 };
                 if is_new && are_apart() {

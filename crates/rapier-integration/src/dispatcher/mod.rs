@@ -17,8 +17,8 @@ use crate::{SbbkConfig, SbbkStats};
 
 /// A query dispatcher for Rapier, and for other hosts of Parry.
 ///
-/// Handles pairs of meshes, and the contacts of a mesh with convex shapes, compounds, polylines and
-/// height fields. All other pairs go to Parry's
+/// Handles pairs of two meshes, and of a mesh and a convex shape. Also handles contacts of a mesh with compounds,
+/// polylines and height fields. All other queries go to Parry's
 /// [`DefaultQueryDispatcher`](parry3d::query::DefaultQueryDispatcher), except two triangles in
 /// `contact_manifold_convex_convex`. Clones share their trees.
 #[derive(Clone)]

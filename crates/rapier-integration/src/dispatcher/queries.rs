@@ -16,7 +16,7 @@ use crate::query::{MeshQuery, NonlinearCast, Query};
 impl SbbkDispatcher {
     /// Calls `then` for two rigid meshes, or a mesh and a convex shape, and counts the search. Returns `None` if Parry
     /// must answer. `apart` holds a distance, and the result for shapes whose boxes are farther apart.
-    /// `balls` selects who handles balls.
+    /// `takes_balls`: true if SBBK answers for balls.
     fn search<T>(
         &self,
         pos12: &Pose,
@@ -45,8 +45,9 @@ impl SbbkDispatcher {
             [None, Some(mesh)] => (mesh, g1, MeshPlace::Second),
             [None, None] => return None,
         };
-        let is_parrys = !takes_balls && other.as_ball().is_some();
-        if !self.config.kinds.convex_shapes || is_parrys || !other.is_convex() {
+        let convex = ConvexShape::of(other)?;
+        let is_parrys = !takes_balls && matches!(convex, ConvexShape::Ball(_));
+        if !self.config.kinds.convex_shapes || is_parrys {
             return None;
         }
         if let Some((distance, apart)) = apart
@@ -54,7 +55,6 @@ impl SbbkDispatcher {
         {
             return answer(apart);
         }
-        let convex = ConvexShape::of(other)?;
         let search = ConvexSearch::new(self.view(mesh)?, other, convex, mesh_place, pos12);
         answer(then(Query::Convex(search)))
     }

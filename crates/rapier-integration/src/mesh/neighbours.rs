@@ -61,13 +61,14 @@ impl Neighbour {
 
 /// Triangles at a corner beyond which these are a crowd. Higher: fans take longer. Lower: crowds of both ends of an edge
 /// take longer.
-const CROWD: usize = 64;
+const MOST_NEAR: usize = 64;
 
 /// Returns the triangles whose boxes hold both ends of an edge, and others at one end. Looks at an end without a crowd.
 fn near_edge(mesh: &TriMesh, ends: [Vector; 2]) -> Vec<u32> {
     for end in ends {
         let at = Aabb::new(end, end);
-        let near: ArrayVec<u32, CROWD> = mesh.bvh().intersect_aabb(&at).take(CROWD).collect();
+        let near: ArrayVec<u32, MOST_NEAR> =
+            mesh.bvh().intersect_aabb(&at).take(MOST_NEAR).collect();
         if !near.is_full() {
             return near.to_vec();
         }

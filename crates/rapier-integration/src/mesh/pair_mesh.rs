@@ -180,13 +180,13 @@ impl<'a> LazySurface<'a> {
             // Computes the flags as well.
             Twins::All(store.surface(mesh, data), data.flags())
         };
-        MeshFacets { mesh, twins, memo: &self.memo, declared: self.declared().1 }
+        MeshFacets { mesh, twins, memo: &self.memo, declared: self.kind_and_side().1 }
     }
 
     /// Returns the kind of the mesh, and the [declared](MeshFacets::declared) side of its triangles. Analyses the mesh if it is
     /// analysed as a whole.
     #[inline]
-    fn declared(&self) -> (SurfaceKind, Option<Side>) {
+    fn kind_and_side(&self) -> (SurfaceKind, Option<Side>) {
         *self.declared.get_or_init(|| {
             let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
             let found = || match self.is_local() {
@@ -252,7 +252,7 @@ impl<'a> LazySurface<'a> {
     /// Returns the kind of the mesh.
     #[inline]
     pub(crate) fn kind(&self) -> SurfaceKind {
-        self.declared().0
+        self.kind_and_side().0
     }
 }
 

@@ -1,7 +1,8 @@
 //! Far contacts of two shapes made of triangles: what may be hit in the next step, but is not near.
 //!
 //! A host asks for them where a body is small beside the prediction distance, or fast and has soft CCD.
-//! Fine meshes only have contacts from their tips to the nearest points of the other shape. Walks add the places
+//! Fine meshes only have contacts from their tips to the nearest points of the other shape. Rays from up to 128 triangles of each
+//! mesh find obstacles ahead. Walks add the places
 //! where shapes are nearest to each other. A walk goes from a point of one shape to the nearest point of the other,
 //! and back. It may end at another place. Shapes of few triangles that nearly touch keep all contacts in the
 //! directions of local minima. Others keep the local minima
@@ -174,7 +175,7 @@ impl TriangleShapes<'_> {
         }
         let mut pair = [met; 2];
         pair[i] = triangle;
-        self.nearest_points(pair, f64::from(within))
+        self.contact_within(pair, f64::from(within))
     }
 
     /// Walks on from a contact. The first step starts at the point of shape `i`.
@@ -204,11 +205,11 @@ impl TriangleShapes<'_> {
         };
         let mut pair = *pair;
         pair[1 - i] = self[1 - i].nearest_triangle(point.as_vec3(), limit as Real)?;
-        self.nearest_points(pair, limit)
+        self.contact_within(pair, limit)
     }
 
     /// Returns the contact of two triangles, if that is within a limit.
-    pub(super) fn nearest_points(&self, pair: [u32; 2], limit: f64) -> Option<TriangleHit> {
+    pub(super) fn contact_within(&self, pair: [u32; 2], limit: f64) -> Option<TriangleHit> {
         let local = self.local(pair)?;
         let [t1, t2] = &local.corners;
         Some((pair, TriangleSurfaceContact::of_triangles(contact(t1, t2, limit)?)))

@@ -182,9 +182,9 @@ impl OverlapIslands {
         Some(self.crossings[index]).filter(|crossing| !crossing.is_fine())
     }
 
-    /// Returns true if an island has too few reliable contacts, or if some push the wrong way. `small`: depth of bodies at rest.
+    /// Finds the ways that part whole islands, and rejects contacts that push aside. Returns true if a second pass is needed. `small`: depth of bodies at rest.
     /// `is_parted` tells if a way of a length parts two triangles, and both surfaces end there.
-    pub(super) fn needs_second_pass(
+    pub(super) fn settle_one_ways(
         &mut self,
         small: f64,
         is_parted: impl Fn([u32; 2], DVec3, f64) -> bool,

@@ -93,7 +93,7 @@ pub(crate) trait PairQuery {
         found: &mut Vec<Candidate<Self::Hint>>,
     );
 
-    /// Adds the contacts of candidates, in the order of subshapes, at most one for two subshapes.
+    /// Adds the contacts of candidates, in the order of subshapes: one for two subshapes, except vertices at half-spaces.
     fn contacts(
         &mut self,
         candidates: &mut [Candidate<Self::Hint>],

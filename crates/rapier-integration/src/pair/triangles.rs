@@ -120,7 +120,7 @@ impl MeshPair<'_> {
 
     /// Returns true for contacts of surfaces.
     fn has_surfaces(&self) -> bool {
-        self.config.has_surfaces() && self.are_rigid()
+        self.config.wants_surfaces() && self.are_rigid()
     }
 
     /// Returns a shape with its tree, if there is one. Meshes get trees for each other.
@@ -241,8 +241,7 @@ impl ChunkResult for FirstPass {
 }
 
 thread_local! {
-    static MEMORY: Cell<Option<Box<super::query::QueryMemory<TriangleScratch, TriangleSurfaceContact>>>> =
-        Cell::default();
+    static MEMORY: Memory<TriangleQuery<'static>> = Cell::default();
 }
 
 impl PairQuery for TriangleQuery<'_> {
@@ -307,7 +306,7 @@ impl PairQuery for TriangleQuery<'_> {
         if !islands.crossings.is_empty() {
             self.add_of_islands(islands, contours, contacts);
         }
-        if self.needs_second_pass(islands) {
+        if self.settle_one_ways(islands) {
             self.second_pass(islands, contacts);
         }
         self.drop_lifted(islands.one_ways(), contacts);
@@ -446,7 +445,7 @@ impl TriangleQuery<'_> {
         let contact = |of: &Candidate<Hint>| {
             let has_contacts = |filter: &SurfaceFilter<'_>| !filter.has_wall_within();
             let counts = self.shapes.with_filter(of.subshapes, has_contacts) == Some(true);
-            counts.then(|| self.shapes.nearest_points(of.subshapes, within)).flatten()
+            counts.then(|| self.shapes.contact_within(of.subshapes, within)).flatten()
         };
         let is_near = |(_, hit): &TriangleHit| hit.contact.distance <= limits.reach;
         let may_touch = candidates.iter().filter(|candidate| limits.may_touch(candidate));

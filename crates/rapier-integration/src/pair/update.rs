@@ -4,8 +4,8 @@
 //! * A change of the shapes since the last query drops what no longer holds.
 //! * An equal pose leaves the manifolds as they are. Shapes that were apart, and have moved by less than their distance,
 //!   have none.
-//! * If the candidates of the last descent no longer serve, a descent finds new ones. If there were none, the distance of
-//!   the shapes may tell for how long there will be none.
+//! * If the candidates of the last descent no longer serve, a descent finds new ones. If there were none, a lower bound
+//!   of the distance may replace the descent.
 //! * Candidates in reach become contacts ([`PairQuery::contacts`]).
 //! * Contacts become manifolds: one each, or a few for all ([`write`](super::write)).
 

@@ -92,9 +92,9 @@ impl Surface {
         self.twins.get(half_edge)
     }
 
-    /// The first triangle of a crowd: more than a thousand that meet at a vertex. Takes the corners of one
-    /// of these. Boxes in a crowd overlap, so rays from each triangle would take quadratic time.
-    pub fn crowd(&self, corners: [Vec3; 3]) -> Option<u32> {
+    /// The first triangle at a hub, a vertex of more than a thousand. Takes the corners of a triangle
+    /// there. Boxes at a hub overlap, so rays from each triangle would take quadratic time.
+    pub fn first_at_hub(&self, corners: [Vec3; 3]) -> Option<u32> {
         if self.hubs.is_empty() {
             return None;
         }

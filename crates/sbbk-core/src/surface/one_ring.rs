@@ -28,7 +28,7 @@ pub struct Around<F> {
 
 /// Triangles near the point of an impact that are looked at. Higher: slow casts at the hub of a fan. Lower: casts
 /// along walls stop where many triangles meet.
-const CROWD: usize = 64;
+const MOST_NEAR: usize = 64;
 
 /// Share of the coordinates that rounding to f32 may open between triangles that touch. Higher: triangles across a gap count as
 /// touching. Lower: casts stop at T-junctions of a wall that they slide along.
@@ -117,7 +117,7 @@ impl<F: Facets> Around<F> {
     ) -> bool {
         let mut slopes = Slopes::default();
         let rounding = ROUNDING * place.abs().max_element();
-        self.visit_touching(triangle, place, CROWD, |_, corners, ends| {
+        self.visit_touching(triangle, place, MOST_NEAR, |_, corners, ends| {
             if !touches(corners, [DVec3::ZERO; 2], rounding) {
                 let point = PointSupport(distance * direction);
                 let nearest = convex_contact(corners, &point, f64::INFINITY);

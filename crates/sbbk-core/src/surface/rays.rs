@@ -112,7 +112,7 @@ pub(super) fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<
 
 /// Triangles near a ray up to which [`ends_within`] tests them. Higher: slow where many triangles are at one place. Lower: more
 /// rays that test winding numbers.
-const CROWD: usize = 64;
+const MOST_NEAR: usize = 64;
 
 /// Returns true if a solid ends within a length along a ray that starts in it. `near` has the corners of all triangles that
 /// the ray may meet, seen from its start. `outward` is the sign with which normals lead out of the solid. A solid goes on
@@ -123,14 +123,14 @@ pub fn ends_within(
     length: f64,
     outward: f64,
 ) -> bool {
-    let near: ArrayVec<[DVec3; 3], CROWD> = near.take(CROWD).collect();
+    let near: ArrayVec<[DVec3; 3], MOST_NEAR> = near.take(MOST_NEAR).collect();
     if near.is_full() {
         return false;
     }
     let hit = |corners: &[DVec3; 3]| {
         hit(corners, direction).filter(|(at, ..)| *at > 0.0 && *at <= length)
     };
-    let mut hits: ArrayVec<_, CROWD> = near.iter().filter_map(hit).collect();
+    let mut hits: ArrayVec<_, MOST_NEAR> = near.iter().filter_map(hit).collect();
     hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let (mut parts, mut end) = (1.0, None);
     for (at, sign) in crossings(hits.into_iter().map(|(at, sign, _)| (at, sign, false))) {

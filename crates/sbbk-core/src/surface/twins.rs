@@ -11,9 +11,9 @@ use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
 
-/// Triangles at a vertex beyond which these are a crowd. If the first is a face, all count as faces.
+/// Triangles at a vertex beyond which the vertex is a hub. If the first is a face, all count as faces.
 /// Higher: fans take longer. Lower: parts within others have contacts.
-const CROWD: u32 = 1024;
+const HUB: u32 = 1024;
 
 /// Adjacency of a mesh.
 pub(super) struct Adjacency {
@@ -265,12 +265,12 @@ fn hubs(
     triangles: &[[u32; 3]],
 ) -> FxHashMap<Place, (u32, u32)> {
     let mut hubs = FxHashMap::default();
-    if valence.iter().all(|&count| count <= CROWD) {
+    if valence.iter().all(|&count| count <= HUB) {
         return hubs;
     }
     for (triangle, corners) in (0..).zip(triangles) {
         for vertex in corners.map(|corner| welded[corner as usize] as usize) {
-            if valence[vertex] > CROWD {
+            if valence[vertex] > HUB {
                 hubs.entry(place(vertices[vertex])).or_insert((valence[vertex], triangle));
             }
         }

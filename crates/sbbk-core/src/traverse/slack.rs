@@ -1,6 +1,6 @@
 //! Descents with a larger margin, so that their candidates serve for several queries.
 //!
-//! Bodies move little from query to query. A descent whose margin exceeds the prediction distance
+//! Bodies move little from query to query. A descent whose margin exceeds the reach
 //! `p` by a *slack* `s` finds all pairs that are at most `p + s` apart. While no point of tree 2
 //! has moved by more than `s`, all other pairs are still farther than `p` apart. The candidates are
 //! complete, and neither tree need be read (Verlet, *Computer "Experiments" on Classical Fluids*,
@@ -23,7 +23,7 @@ const SMALL: f64 = 0.1;
 /// descents; lower: wide descents for a single query.
 const LEAST_STEPS: f64 = 3.0;
 
-/// Limits of the slack. Their unit is the prediction distance, or less for small bodies.
+/// Limits of the slack. Their unit is the reach, or less for small bodies.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SlackLimits {
     /// Slack in steps of the present motion. Higher: fewer descents, and more candidates that do
@@ -79,7 +79,7 @@ pub enum SlackPlan {
     },
     /// Descend, and keep the candidates instead of those found before.
     Descend {
-        /// The prediction distance plus the slack.
+        /// The reach plus the slack.
         margin: f32,
     },
 }
@@ -88,30 +88,29 @@ impl Slack {
     /// Plans a query and stores its placement, in constant time. The frame of the moving body is at
     /// `placement`.
     ///
-    /// If the placement or the prediction distance is not finite, plans a descent without slack.
+    /// If the placement or the reach is not finite, plans a descent without slack.
     pub fn plan(
         &mut self,
         body: MovingBody,
         placement: &Placement,
-        prediction: f32,
+        reach: f32,
         limits: SlackLimits,
     ) -> SlackPlan {
         let motion_since = |then: &Placement| body.motion(placement, then);
         let step = self.last.as_ref().map(motion_since);
         self.last = Some(*placement);
         self.travel += step.unwrap_or(0.0);
-        if let Some((then, margin)) = self.descent {
-            let reach = f64::from(prediction) + motion_since(&then);
-            if reach <= f64::from(margin) {
-                return SlackPlan::Reuse { margin };
-            }
+        if let Some((then, margin)) = self.descent
+            && f64::from(reach) + motion_since(&then) <= f64::from(margin)
+        {
+            return SlackPlan::Reuse { margin };
         }
         // The first query gets no slack: its motion is unknown.
-        let unit = f64::from(prediction).min(SMALL * f64::from(body.ball.radius));
+        let unit = f64::from(reach).min(SMALL * f64::from(body.ball.radius));
         let slack = step.map_or(0.0, |step| slack(step, unit, limits));
-        let wide = prediction + slack as f32;
-        let margin = if wide.is_finite() { wide } else { prediction };
-        self.descent = (margin > prediction).then_some((*placement, margin));
+        let wide = reach + slack as f32;
+        let margin = if wide.is_finite() { wide } else { reach };
+        self.descent = (margin > reach).then_some((*placement, margin));
         self.travel = 0.0;
         SlackPlan::Descend { margin }
     }
@@ -126,7 +125,7 @@ impl Slack {
         self.descent = self.last.map(|placement| (placement, margin));
     }
 
-    /// Returns the motion since the last query for which the candidates of the last descent still serve; 0 without any.
+    /// Returns how much farther the body may move before the candidates no longer serve; 0 without any.
     pub fn rest(&self, body: MovingBody, placement: &Placement, reach: f32) -> f64 {
         self.descent.map_or(0.0, |(then, margin)| {
             f64::from(margin) - f64::from(reach) - body.motion(placement, &then)

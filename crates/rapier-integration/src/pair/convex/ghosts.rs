@@ -40,7 +40,7 @@ use super::contact::{Hit, PartContact};
 pub(super) const ROUNDED: f64 = 1.0e-12;
 
 /// Contacts at a feature that may be of a floor. Higher: slow at the hub of a fan. Lower: walls are ghosts where many triangles meet.
-const CROWD: usize = 64;
+const MOST_FLOORS: usize = 64;
 
 /// Memory for the search: the contacts by the corners of their triangles.
 #[derive(Default)]
@@ -52,9 +52,9 @@ pub(crate) struct GhostContacts {
     triangles: Vec<[u32; 3]>,
     /// For each contact the one whose normal it takes.
     pub(super) sources: Vec<u32>,
-    /// Contacts that take the normal of a face.
-    pub(super) on_faces: Vec<u32>,
-    /// Contacts at borders of the mesh that keep their normals.
+    /// Contacts that a triangle extends beyond. They may take the normal of a face.
+    pub(super) exceeded: Vec<u32>,
+    /// Contacts at borders of the mesh. Some take the normals of their faces.
     pub(super) borders: Vec<u32>,
     /// Contacts at borders that take the normals of the faces, in their order.
     pub(super) upright: Vec<UprightContact>,
@@ -145,8 +145,8 @@ fn ends(feature: Feature) -> [usize; 2] {
 }
 
 impl GhostContacts {
-    /// Finds the contacts that take another normal: [`on_faces`](Self::on_faces) and
-    /// [`sources`](Self::sources).
+    /// Finds the contacts that may take another normal: [`exceeded`](Self::exceeded), [`sources`](Self::sources),
+    /// [`borders`](Self::borders) and [`walls`](Self::walls).
     ///
     /// `keys` returns the corners of a contact's triangle. `extends_beyond(a, b)` is true if the triangle of
     /// contact `a` extends beyond contact `b` along the normal of `b`. `find_strays` adds the
@@ -185,7 +185,7 @@ impl GhostContacts {
             } else if own.distance < 0.0
                 && self.is_exceeded(contacts, contact, range, &mut extends_beyond)
             {
-                self.on_faces.push(contact);
+                self.exceeded.push(contact);
             }
         }
         self.follow_sources();
@@ -202,7 +202,7 @@ impl GhostContacts {
     ) -> Option<ConvexContact> {
         let (of, PartContact { contact: own, feature, .. }) = &contacts[contact as usize];
         let others = self.at_feature(contact, *feature).chain(self.strays_in(strays));
-        let others = others.take(CROWD).map(|other| &contacts[other as usize]);
+        let others = others.take(MOST_FLOORS).map(|other| &contacts[other as usize]);
         let mut floors = others.filter(|(_, it)| it.contact.normal.dot(own.normal) < 0.0);
         floors.find_map(|floor| find_wall(*of, floor))
     }
@@ -223,7 +223,7 @@ impl GhostContacts {
     fn begin(&mut self, contacts: &[Hit], keys: impl Fn([u32; 2]) -> [u64; 3]) {
         self.kept_strays = 0;
         self.walls.clear();
-        self.on_faces.clear();
+        self.exceeded.clear();
         self.borders.clear();
         self.sources.clear();
         self.sources.extend(0..contacts.len() as u32);
@@ -422,13 +422,13 @@ mod tests {
             let mut ghosts = GhostContacts::default();
             ghosts.find(&contacts, |[i, _]| strip(i), |_, _| true, |_, _| {}, |_, _| None);
             assert_eq!(ghosts.sources, vec![0; count as usize]);
-            assert!(ghosts.on_faces.is_empty(), "nothing crosses");
+            assert!(ghosts.exceeded.is_empty(), "nothing crosses");
             contacts[2].1.feature = Feature::Face;
             contacts[1].1.contact.distance = -0.3;
             contacts[2].1.contact.distance = -0.2;
             ghosts.find(&contacts, |[i, _]| strip(i), |_, _| true, |_, _| {}, |_, _| None);
             assert_eq!(ghosts.sources[..4], [0, 1, 2, 2]);
-            assert_eq!(ghosts.on_faces, [1]);
+            assert_eq!(ghosts.exceeded, [1]);
             ghosts.list_nearby(1);
             assert_eq!(ghosts.nearby, [1, 0, 2, 3]);
         }
@@ -451,6 +451,6 @@ mod tests {
             strays.extend((*i == 1).then_some(3));
         };
         ghosts.find(&contacts, keys, extends_beyond, strays, |_, _| None);
-        assert_eq!(ghosts.on_faces, [1]);
+        assert_eq!(ghosts.exceeded, [1]);
     }
 }

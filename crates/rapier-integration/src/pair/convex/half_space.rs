@@ -72,7 +72,7 @@ impl TrianglePartPair<'_> {
         let ConvexPair { mesh_place, pose, .. } = self.pair;
         let normal = half_space.normal.as_dvec3();
         let corners = self.placed.in_part(self.corners);
-        let is_all = self.pair.vertices_of().is_none();
+        let is_all = self.pair.half_space_by_vertices().is_none();
         for (i, corner, distance) in near_corners(&corners, normal, pose.prediction.into()) {
             if is_all || *feature == Feature::Vertex(i) {
                 out.points.push(TrackedContact::flipped(

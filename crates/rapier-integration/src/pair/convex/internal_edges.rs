@@ -117,7 +117,6 @@ impl ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
     ) {
         let GhostContacts { borders, sources, upright, .. } = ghosts;
-        upright.clear();
         for &index in borders.iter().filter(|&&i| sources[i as usize] == i) {
             let (of, hit) = &contacts[index as usize];
             let of_face = self.with_pair(*of, scratch, |pair| {
@@ -150,15 +149,15 @@ impl ConvexQuery<'_> {
         place.is_none_or(|(place, _)| around.is_border(triangle, hit.feature, place.as_dvec3()))
     }
 
-    /// Replaces contacts that a triangle [passes](GhostContacts::on_faces) by the least deep way out of the triangle.
+    /// Replaces contacts that a triangle [extends beyond](GhostContacts::exceeded) by the least deep way out of the triangle.
     fn turn_to_faces(
         &self,
         ghosts: &mut GhostContacts,
         contacts: &mut [Hit],
         scratch: &mut ConvexScratch,
     ) {
-        for i in 0..ghosts.on_faces.len() {
-            let exceeded = ghosts.on_faces[i];
+        for i in 0..ghosts.exceeded.len() {
+            let exceeded = ghosts.exceeded[i];
             ghosts.list_nearby(exceeded);
             let (of, own) = contacts[exceeded as usize];
             let [_, part] = self.pair.mesh_place.swap(of);

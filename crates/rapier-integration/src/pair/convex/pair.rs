@@ -28,20 +28,20 @@ impl ConvexPair<'_> {
 
     /// Returns true for contacts of the surface. Soft bodies need contacts of each triangle.
     pub(super) fn has_surface(&self) -> bool {
-        self.config.has_surfaces() && self.mesh.is_rigid()
+        self.config.wants_surfaces() && self.mesh.is_rigid()
     }
 
     pub(super) fn is_ball(&self) -> bool {
         matches!(self.parts, Parts::One(ConvexShape::Ball(_)))
     }
 
-    /// Returns true if contacts make patches: unless the mesh is soft or the shape is a ball, which has few contacts of one point.
+    /// Returns true if contacts make patches: unless the mesh is deformable or the shape is a ball, which has few contacts of one point.
     pub(super) fn has_patches(&self) -> bool {
         self.config.has_patches() && self.mesh.is_rigid() && !self.is_ball()
     }
 
     /// Returns the half-space if contacts with it are [vertices](super::half_space).
-    pub(super) fn vertices_of(&self) -> Option<&HalfSpace> {
+    pub(super) fn half_space_by_vertices(&self) -> Option<&HalfSpace> {
         let Parts::One(ConvexShape::HalfSpace(half_space)) = self.parts else { return None };
         self.has_patches().then_some(half_space)
     }

@@ -151,7 +151,7 @@ pub(crate) struct PartData {
     extents: Vec<OnceLock<Extent>>,
     /// A ball around the whole.
     pub(super) ball: Sphere,
-    /// Upper bound of the size of a part plus its distance from the origin of the whole.
+    /// Upper bound of coordinates in the frame of any part, for rounding.
     pub(super) magnitude: Real,
     /// Size of the largest part, with its distance from the origin of the whole.
     size: OnceLock<Real>,

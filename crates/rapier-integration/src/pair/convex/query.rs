@@ -21,9 +21,7 @@ use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
 use crate::mesh::{Change, LazySurface, PairMesh};
 use crate::pair::pose::{Moving, PairPose};
-use crate::pair::query::{
-    Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery, QueryMemory,
-};
+use crate::pair::query::{Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery};
 use crate::pair::reduce::{ContactSummary, PatchPlan};
 use crate::pair::ways::Ways;
 
@@ -101,7 +99,7 @@ impl DroppedContacts {
 }
 
 thread_local! {
-    static MEMORY: Cell<Option<Box<QueryMemory<ConvexScratch, PartContact>>>> = Cell::default();
+    static MEMORY: Memory<ConvexQuery<'static>> = Cell::default();
 }
 
 impl ConvexQuery<'_> {
@@ -238,7 +236,7 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
         contacts: &mut ContactList<PartContact>,
     ) {
-        if let Some(half_space) = self.pair.vertices_of() {
+        if let Some(half_space) = self.pair.half_space_by_vertices() {
             self.add_vertices(half_space, candidates, limits, scratch, contacts);
             return;
         }
@@ -264,7 +262,6 @@ impl PairQuery for ConvexQuery<'_> {
         self.correct(contacts, scratch);
     }
 
-    /// Makes patches unless the mesh is soft or the shape is a ball, which has few contacts of one point.
     fn reduction(&self, _: &ContactList<PartContact>) -> Option<PatchPlan> {
         self.pair.has_patches().then(|| {
             let radius = self.part_data.patch_radius(&self.pair.parts);

@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use glamx::{DVec3, Vec3, Vec3Swizzles};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{
-    Ball, ConvexPolyhedron, Cuboid, HalfSpace, PolygonalFeatureMap, RoundShape, Segment, Shape,
-    ShapeType, Triangle, TypedShape,
+    Ball, ConvexPolyhedron, Cuboid, HalfSpace, PolygonalFeatureMap, Segment, Shape, ShapeType,
+    Triangle, TypedShape,
 };
 use sbbk_core::contact::convex::HullPoints;
 use sbbk_core::volumes::Sphere;
@@ -80,26 +80,25 @@ impl ConvexShape<'_> {
             Self::Ball(_) => (ShapeType::Ball, one(Vec3::ZERO)),
             Self::HalfSpace(half_space) => (ShapeType::HalfSpace, one(half_space.normal)),
             Self::Cuboid(cuboid) => (ShapeType::Cuboid, one(cuboid.half_extents)),
-            Self::Features { shape, .. } => match shape.as_typed_shape() {
-                TypedShape::Segment(it) => (ShapeType::Segment, segment(it)),
-                TypedShape::Capsule(it) => (ShapeType::Capsule, segment(&it.segment)),
-                TypedShape::Triangle(it) => (ShapeType::Triangle, triangle(it)),
-                TypedShape::RoundTriangle(it) => {
-                    (ShapeType::RoundTriangle, triangle(&it.inner_shape))
-                }
-                TypedShape::Cylinder(it) => (ShapeType::Cylinder, round(it.half_height, it.radius)),
-                TypedShape::RoundCylinder(RoundShape { inner_shape: it, .. }) => {
-                    (ShapeType::RoundCylinder, round(it.half_height, it.radius))
-                }
-                TypedShape::Cone(it) => (ShapeType::Cone, round(it.half_height, it.radius)),
-                TypedShape::RoundCone(RoundShape { inner_shape: it, .. }) => {
-                    (ShapeType::RoundCone, round(it.half_height, it.radius))
-                }
-                TypedShape::RoundCuboid(it) => {
-                    (ShapeType::RoundCuboid, one(it.inner_shape.half_extents))
-                }
-                _ => (shape.shape_type(), one(Vec3::ZERO)),
-            },
+            Self::Features { shape, .. } => {
+                let numbers = match shape.as_typed_shape() {
+                    TypedShape::Segment(it) => segment(it),
+                    TypedShape::Capsule(it) => segment(&it.segment),
+                    TypedShape::Triangle(it) => triangle(it),
+                    TypedShape::RoundTriangle(it) => triangle(&it.inner_shape),
+                    TypedShape::Cylinder(it) => round(it.half_height, it.radius),
+                    TypedShape::RoundCylinder(it) => {
+                        round(it.inner_shape.half_height, it.inner_shape.radius)
+                    }
+                    TypedShape::Cone(it) => round(it.half_height, it.radius),
+                    TypedShape::RoundCone(it) => {
+                        round(it.inner_shape.half_height, it.inner_shape.radius)
+                    }
+                    TypedShape::RoundCuboid(it) => one(it.inner_shape.half_extents),
+                    _ => one(Vec3::ZERO),
+                };
+                (shape.shape_type(), numbers)
+            }
         };
         (shape_type, self.radius(), numbers)
     }

@@ -164,7 +164,7 @@ impl TrianglePartPair<'_> {
             distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
         }
         let part = if self.part.pose.is_some() { self.placed.index } else { 0 };
-        let spread = if self.pair.vertices_of().is_some() { 0.0 } else { self.spread() };
+        let spread = if self.pair.half_space_by_vertices().is_some() { 0.0 } else { self.spread() };
         Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance, spread })
     }
 

@@ -44,7 +44,7 @@ fn islands_without_a_reliable_contact_need_support() {
             islands.crossings.push(crossing(pair, contact, None));
         }
         islands.join();
-        assert!(islands.needs_second_pass(0.0, |_, _, _| false));
+        assert!(islands.settle_one_ways(0.0, |_, _, _| false));
         let pairs = [[1, 1], [1, 2], [3, 2], [7, 7], [7, 8]];
         let open = pairs.map(|pair| is_open(&islands, pair));
         assert_eq!(open, [false, false, false, true, true]);
@@ -55,12 +55,12 @@ fn islands_without_a_reliable_contact_need_support() {
     islands.clear();
     islands.crossings.push(crossing([1, 1], Some(&good), None));
     islands.join();
-    assert!(!islands.needs_second_pass(0.0, |_, _, _| false), "all is good");
+    assert!(!islands.settle_one_ways(0.0, |_, _, _| false), "all is good");
     islands.clear();
     islands.crossings.push(crossing([1, 1], None, None));
     islands.crossings.push(crossing([1, 2], Some(&good), None));
     islands.join();
-    assert!(!islands.needs_second_pass(0.0, |_, _, _| false), "the island is held");
+    assert!(!islands.settle_one_ways(0.0, |_, _, _| false), "the island is held");
 }
 
 /// Would catch a large island that turns about its only contact, and added contacts that push
@@ -74,7 +74,7 @@ fn one_contact_does_not_support_a_large_island() {
             islands.crossings.push(crossing([1, i], Some(&good).filter(|_| i < contacts), None));
         }
         islands.join();
-        let needs_more = islands.needs_second_pass(0.0, |_, _, _| false);
+        let needs_more = islands.settle_one_ways(0.0, |_, _, _| false);
         assert_eq!(needs_more, islands.support.first().is_some_and(|support| !support.is_enough()));
         assert!(!needs_more || islands.is_final([1, 0]));
         assert!(support(&islands, [1, 0]).agrees(DVec3::new(1.0, 0.1, 0.0)));
@@ -93,7 +93,7 @@ fn added_contacts_do_not_push_through_a_sheet() {
         let sheet = SheetSide { shape: Some(0), away: DVec3::Y, height: 0.01 * side };
         islands.crossings.push(crossing([1, 0], None, Some(sheet)));
         islands.join();
-        assert!(islands.needs_second_pass(0.0, |_, _, _| false) && is_open(&islands, [1, 0]));
+        assert!(islands.settle_one_ways(0.0, |_, _, _| false) && is_open(&islands, [1, 0]));
         let support = support(&islands, [1, 0]);
         assert!(support.agrees(side * DVec3::Y) && !support.agrees(-side * DVec3::Y));
     }

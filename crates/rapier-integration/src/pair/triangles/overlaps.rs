@@ -78,11 +78,11 @@ impl TriangleQuery<'_> {
         (contact.distance <= 0.0).then_some(TriangleSurfaceContact { contact, source })
     }
 
-    /// Returns true if a second pass is needed.
-    pub(super) fn needs_second_pass(&self, islands: &mut OverlapIslands) -> bool {
+    /// Finds the ways that part whole islands. Returns true if a second pass is needed.
+    pub(super) fn settle_one_ways(&self, islands: &mut OverlapIslands) -> bool {
         let small = RESTING_DEPTH * self.shapes.filter_distance;
         let is_parted = |pair: [u32; 2], way: DVec3, length: f64| self.is_parted(pair, way, length);
-        islands.needs_second_pass(small, is_parted)
+        islands.settle_one_ways(small, is_parted)
     }
 
     /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
@@ -119,7 +119,7 @@ impl TriangleQuery<'_> {
         islands: &OverlapIslands,
     ) -> impl Iterator<Item = TriangleHit> {
         let within = f64::from(self.shapes.pose.prediction);
-        islands.overlaps().filter_map(move |pair| self.shapes.nearest_points(pair, within))
+        islands.overlaps().filter_map(move |pair| self.shapes.contact_within(pair, within))
     }
 
     /// Returns true if a way parts two triangles at their height, and both surfaces end there.

@@ -33,7 +33,7 @@ const ON_BODY: f64 = 1.0e-12;
 /// the size. Contact points are off the shape by as much.
 const TIE: f64 = 1.0e-11;
 
-/// The surface of a convex hull, as triangles.
+/// Planes and edges of a hull, for depths of crossing triangles.
 #[derive(Clone, Debug)]
 pub(super) struct HullFaces {
     points: PointLanes,
@@ -93,7 +93,7 @@ impl HullFaces {
         let doubtful = DOUBTFUL * size;
         let (normal, squared) = thin_normal(*triangle)?;
         let mut depths = ArrayVec::new();
-        let mut least = self.face(triangle, &mut depths);
+        let mut least = self.least_of_faces(triangle, &mut depths);
         if least.depth <= doubtful {
             return None;
         }
@@ -104,15 +104,15 @@ impl HullFaces {
                 least = Separation { outward, depth, facet: HullFacet::Triangle };
             }
         }
-        let of_edges = self.edge_pair(triangle, &depths, least.depth)?;
-        if let Some(reach) = of_edges {
+        let of_edges = self.least_of_edges(triangle, &depths, least.depth)?;
+        if let Some(of_edges) = of_edges {
             // A move to the support plane separates the bodies in spite of rounding of the arcs.
-            let depth =
-                self.points.farthest(reach.outward).0 - lowest_height(triangle, reach.outward);
-            if (depth - reach.depth).abs() > ROUNDING * size + 1.0e-10 * depth {
+            let depth = self.points.farthest(of_edges.outward).0
+                - lowest_height(triangle, of_edges.outward);
+            if (depth - of_edges.depth).abs() > ROUNDING * size + 1.0e-10 * depth {
                 return None;
             }
-            least = Separation { depth, ..reach };
+            least = Separation { depth, ..of_edges };
         }
         if least.depth <= doubtful {
             return None;
@@ -123,7 +123,7 @@ impl HullFaces {
 
     /// The least depth along the normal of a face; and how deep each corner is below each face.
     #[inline(always)]
-    fn face(&self, triangle: &[DVec3; 3], depths: &mut Depths) -> Separation {
+    fn least_of_faces(&self, triangle: &[DVec3; 3], depths: &mut Depths) -> Separation {
         let [a, b, c] = triangle.map(splat);
         let (mut least, mut at) = (f64x4::splat(f64::INFINITY), f64x4::ZERO);
         for (i, planes) in self.planes.iter().enumerate() {
@@ -143,7 +143,7 @@ impl HullFaces {
     /// The least depth along a product of edges, if less than `most`; outer `None` for bodies
     /// apart.
     #[inline(always)]
-    fn edge_pair(
+    fn least_of_edges(
         &self,
         triangle: &[DVec3; 3],
         depths: &Depths,
@@ -190,8 +190,8 @@ impl HullFaces {
 
     /// The point of the triangle that comes to lie on the hull when it moves out.
     #[inline(always)]
-    fn on_triangle(&self, triangle: &[DVec3; 3], reach: &Separation, size: f64) -> Option<DVec3> {
-        let Separation { outward, depth, facet } = *reach;
+    fn on_triangle(&self, triangle: &[DVec3; 3], least: &Separation, size: f64) -> Option<DVec3> {
+        let Separation { outward, depth, facet } = *least;
         let guess = match facet {
             HullFacet::Face => {
                 let corner = triangle[lowest_corner(triangle, outward)];

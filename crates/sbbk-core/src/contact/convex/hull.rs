@@ -13,7 +13,7 @@ use wide::f32x4;
 /// computed twice.
 const KEPT: usize = 16;
 
-/// The convex hull of points in f32, for many support points. The hull of no points is the origin.
+/// The convex hull of points in f32, for many support queries. The hull of no points is the origin.
 ///
 /// Heights are compared in f32, in lanes; points within rounding of the greatest height are
 /// compared in f64. The result is the first of the farthest points.
@@ -43,7 +43,7 @@ impl HullPoints {
 
     /// Builds the hull with its probable faces: triangles of point indices, counterclockwise from
     /// outside. They are checked, and mended where rounding makes them concave, when a triangle first
-    /// crosses the hull. Such ones save three quarters of the time to find the faces.
+    /// crosses the hull. Good faces save three quarters of the time to build the hull's surface.
     pub fn with_faces(
         points: impl IntoIterator<Item = Vec3>,
         triangles: impl IntoIterator<Item = [u32; 3]>,

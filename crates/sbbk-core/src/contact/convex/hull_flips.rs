@@ -51,7 +51,7 @@ impl HullSurface {
     }
 
     /// Replaces an edge by the other diagonal of its two triangles. `None` if one end has three
-    /// edges, and would keep two.
+    /// edges, and would keep two, or if a new triangle has no plane.
     fn flip(&mut self, face: usize, edge: usize) -> Option<()> {
         let [start, end] = [edge, NEXT[edge]].map(|i| self.corners[face][i]);
         let other = self.neighbors[face][edge];
@@ -67,11 +67,10 @@ impl HullSurface {
         Some(())
     }
 
-    /// Replaces a triangle by three with a common point. `None` if there would be too many.
+    /// Replaces a triangle by three with a common point. `None` if a triangle would have no plane.
     fn split(&mut self, face: u8, point: DVec3) -> Option<()> {
         let ([a, b, c], [ab, bc, ca]) = self.at_corner(face, self.corners[usize::from(face)][0]);
-        let second = u8::try_from(self.corners.len()).ok()?;
-        let third = second.checked_add(1).filter(|third| *third < u8::MAX)?;
+        let [second, third] = [0, 1].map(|i| self.corners.len() as u8 + i);
         for _ in 0..2 {
             self.planes.push((DVec3::ZERO, 0.0));
             self.corners.push([point; 3]);
@@ -173,6 +172,14 @@ mod tests {
             let surface = HullSurface::from_triangles(&points, &triangles);
             assert!(surface.is_some_and(|surface| holds(&surface, &points, 1.0e-12)), "{height}");
         }
+    }
+
+    #[test]
+    fn more_triangles_than_a_hull_has_are_refused() {
+        let (points, _) = prism(60, 0.0, &mut Random(1));
+        let corners = |i: u32| [i % 120, (i + 1 + i / 120) % 120, (i + 40) % 120];
+        let triangles: Vec<_> = (0..360).map(corners).collect();
+        assert!(HullSurface::from_triangles(&points, &triangles).is_none());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The faces of a convex hull, proved to be those.
+//! Builds the surface of a convex hull, and proves it closed and convex.
 
 use super::lanes::PointLanes;
 use super::polytope::{Face, Polytope};
@@ -7,7 +7,7 @@ use super::support::Vertex;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
-/// Points at most. More: faces of larger hulls than this take as long as a search.
+/// Most points. Faces of more points cost as much as the search.
 pub(super) const POINTS: usize = 128;
 
 /// Faces at most: a closed surface of so many points has fewer than twice as many.
@@ -108,7 +108,8 @@ fn neighbors_of(
 ) -> Option<(Vec<[u8; 3]>, impl Iterator<Item = usize>)> {
     const NONE: u8 = u8::MAX;
     let corners = triangles.as_flattened();
-    if count > POINTS || corners.iter().any(|&corner| corner as usize >= count) {
+    let is_large = count > POINTS || triangles.len() >= usize::from(NONE);
+    if is_large || corners.iter().any(|&corner| corner as usize >= count) {
         return None;
     }
     let edges = |triangle: &[u32; 3]| {
