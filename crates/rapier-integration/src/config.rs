@@ -23,7 +23,7 @@ pub enum ContactDetail {
     /// field, are reduced if all are farther than a tenth of the smaller radius.
     Every,
     /// Reduced contacts: a few manifolds of at most four points, which carry like all of them. They
-    /// have a deepest point, up to rounding. The subshapes are those of the deepest contact. Pairs
+    /// have a deepest point, up to rounding. Subshapes name the triangles of the deepest contact. Pairs
     /// with a ball or a deformable mesh have every contact.
     #[default]
     Patches,
