@@ -59,7 +59,7 @@ impl MeshFacets<'_> {
     /// Returns the side of a triangle of a closed mesh. Takes two rays the first time.
     pub(crate) fn side(self, triangle: u32) -> Side {
         self.flags(triangle).side().unwrap_or_else(|| {
-            let first = self.first_at_hub(triangle).filter(|&first| first != triangle);
+            let first = self.first_of_group(triangle).filter(|&first| first != triangle);
             let is_face = first.is_some_and(|first| self.side(first) == Side::Outer);
             let rays = MeshRays(self.mesh);
             let found = || side(&rays, self.twins.surface(), triangle, self.memo);
@@ -102,8 +102,8 @@ impl MeshFacets<'_> {
         }
     }
 
-    /// Returns the first triangle of a crowd or a small component. If that triangle is a face, so are all.
-    fn first_at_hub(self, triangle: u32) -> Option<u32> {
+    /// Returns the first triangle at a hub or of a small component. If that triangle is a face, so are all.
+    fn first_of_group(self, triangle: u32) -> Option<u32> {
         let Twins::All(surface, _) = self.twins else { return None };
         let of_hub = surface.first_at_hub(*self.mesh.triangle(triangle).vertices());
         of_hub.or_else(|| {

@@ -59,11 +59,11 @@ impl Neighbour {
     }
 }
 
-/// Triangles at a corner beyond which these are a crowd. Higher: fans take longer. Lower: crowds of both ends of an edge
-/// take longer.
+/// Triangles at one end of an edge beyond which the other end is searched. Higher: fans take longer. Lower: edges between
+/// two fans take longer.
 const MOST_NEAR: usize = 64;
 
-/// Returns the triangles whose boxes hold both ends of an edge, and others at one end. Looks at an end without a crowd.
+/// Returns the triangles whose boxes hold both ends of an edge, and others at one end. Looks at an end with fewer than [`MOST_NEAR`].
 fn near_edge(mesh: &TriMesh, ends: [Vector; 2]) -> Vec<u32> {
     for end in ends {
         let at = Aabb::new(end, end);

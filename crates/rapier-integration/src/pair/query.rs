@@ -63,10 +63,11 @@ pub(crate) trait PairQuery {
     /// Begins a query: forgets what the last one left in the memory of the thread.
     fn begin(&self, _scratch: &mut Self::Scratch) {}
 
-    /// Adds all contacts at once, for a query in fast motion whose candidates serve no other one. Returns false
-    /// if that costs more than candidates.
+    /// Adds all contacts within `margin` at once, for a query in fast motion whose candidates serve no other one. Returns
+    /// false if that costs more than candidates.
     fn contacts_without_candidates(
         &mut self,
+        _margin: Real,
         _counts: &mut DescentCounts,
         _scratch: &mut Self::Scratch,
         _contacts: &mut ContactList<Self::Contact>,

@@ -91,7 +91,7 @@ fn update_contacts<Q: PairQuery>(
                 memory.slack.note_clear(clearance);
                 (QueryOutcome::Apart, clearance)
             } else if margin == reach
-                && query.contacts_without_candidates(counts, scratch, contacts)
+                && query.contacts_without_candidates(margin, counts, scratch, contacts)
             {
                 memory.candidates.clear();
                 return QueryOutcome::Descended;

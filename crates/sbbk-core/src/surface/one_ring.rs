@@ -107,7 +107,7 @@ impl<F: Facets> Around<F> {
 
     /// Returns true if a triangle that touches a place on a triangle rises towards a point, by a slope whose
     /// sine is above `most`. A triangle across a gap rises if it is nearer to the point than the place is. The direction and
-    /// the distance lead from the place to the point. Looks at few triangles where a crowd meets.
+    /// the distance lead from the place to the point. Looks at few triangles where many meet.
     pub fn rises(
         &self,
         triangle: u32,

@@ -116,7 +116,7 @@ const MOST_NEAR: usize = 64;
 
 /// Returns true if a solid ends within a length along a ray that starts in it. `near` has the corners of all triangles that
 /// the ray may meet, seen from its start. `outward` is the sign with which normals lead out of the solid. A solid goes on
-/// where one of its parts ends and another begins. Returns false for a crowd of triangles.
+/// where one of its parts ends and another begins. Returns false if too many triangles are near.
 pub fn ends_within(
     near: impl Iterator<Item = [DVec3; 3]>,
     direction: DVec3,

@@ -19,7 +19,7 @@ const HUB: u32 = 1024;
 pub(super) struct Adjacency {
     /// The twin of each half-edge, if there is exactly one besides doubles. Doubles have none.
     pub(super) twins: CompactIndices,
-    /// Size and first triangle of each crowd, by the vertex where the crowd meets.
+    /// Number of triangles and first triangle at each hub, by vertex.
     pub(super) hubs: FxHashMap<Place, (u32, u32)>,
     /// True if closed components have few triangles on average.
     pub(super) has_small_components: bool,

@@ -194,12 +194,12 @@ impl PairQuery for ConvexQuery<'_> {
     /// Serves balls, whose contacts cost less than a list of candidates.
     fn contacts_without_candidates(
         &mut self,
+        margin: Real,
         counts: &mut DescentCounts,
         scratch: &mut ConvexScratch,
         contacts: &mut ContactList<PartContact>,
     ) -> bool {
         let Parts::One(shape @ ConvexShape::Ball(ball)) = self.pair.parts else { return false };
-        let margin = self.reach();
         let placed = self.placed(0, &Part { pose: None, shape, cone: None }, scratch);
         triangles_near(placed, shape, &self.pair.mesh, margin, counts, |triangle| {
             self.add_ball(triangle, ball, placed, margin.into(), contacts);
