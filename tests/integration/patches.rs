@@ -444,3 +444,65 @@ fn patches_reach_as_far_around_a_body_as_all_contacts() {
         assert!(least > 0.6, "{name}: {least}");
     }
 }
+
+/// Small bodies over flat grounds, with predictions of up to twenty radii, as soft CCD has them. Would catch patches without
+/// the nearest contact: a body would pass through a floor.
+#[test]
+fn the_nearest_contact_is_kept_at_any_prediction() {
+    let corners = [-1.0, 1.0].map(|x| [[x, 0.0, -9.0], [x, 0.0, 9.0], [9.0 * x, -2.0, 0.0]]);
+    let wedge: Vec<_> = corners.into_iter().flatten().map(Vec3::from).collect();
+    let top = |shape: SharedShape, y: Real| {
+        SharedShape::compound(vec![(Pose::translation(0.0, -y, 0.0), shape)])
+    };
+    let grounds = [
+        ("cuboid", top(SharedShape::cuboid(9.0, 0.5, 9.0), 0.5)),
+        ("half-space", SharedShape::halfspace(Vec3::Y)),
+        ("hull", SharedShape::convex_hull(&wedge).unwrap()),
+        ("floor", mesh::floor(20.0, 10).shape()),
+        ("coarse floor", mesh::floor(20.0, 1).shape()),
+    ];
+    let bodies = [
+        ("coarse box", mesh::cuboid(Vec3::splat(0.4), 1).shape()),
+        ("box", mesh::cuboid(Vec3::splat(0.4), 4).shape()),
+        ("slab", mesh::cuboid(Vec3::new(0.5, 0.1, 0.4), 3).shape()),
+        ("head", mesh::monkey_head().shape()),
+        ("cuboid", SharedShape::cuboid(0.4, 0.3, 0.2)),
+        ("cylinder", SharedShape::cylinder(0.1, 0.4)),
+        ("cone", SharedShape::cone(0.3, 0.4)),
+        ("capsule", SharedShape::capsule_y(0.3, 0.2)),
+    ];
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(17);
+    for ((on, ground), (name, body)) in
+        grounds.iter().flat_map(|ground| bodies.iter().map(move |body| (ground, body)))
+    {
+        if [ground, body].iter().all(|shape| shape.as_trimesh().is_none()) {
+            continue;
+        }
+        let radius = body.compute_local_bounding_sphere().radius;
+        for i in 0..60 {
+            let gap = radius * [0.0, 0.5, 1.0, 4.0, 16.0][i % 5];
+            let turn = rotation(&mut random);
+            let lowest = match body.as_trimesh() {
+                Some(mesh) => {
+                    let heights = mesh.vertices().iter().map(|&corner| (turn * corner).y);
+                    heights.fold(Real::INFINITY, Real::min)
+                }
+                None => {
+                    let map = body.as_support_map().unwrap();
+                    (turn * map.local_support_point(turn.inverse() * -Vec3::Y)).y
+                }
+            };
+            let at = Pose::from_parts(Vec3::new(0.03, gap - lowest, 0.02), turn);
+            let question = Question::new(&**ground, &**body, at).within(gap + 1.5 * radius);
+            for is_flipped in [false, true] {
+                let found = fresh(&dispatcher, &question.clone().flipped(is_flipped));
+                let nearest = found.iter().map(distance).fold(Real::INFINITY, Real::min);
+                assert!(
+                    (nearest - gap).abs() < 1e-3 * (radius + gap),
+                    "{name} on {on}, {i}, {is_flipped}: {nearest} instead of {gap}",
+                );
+            }
+        }
+    }
+}

@@ -225,7 +225,8 @@ impl Reduction {
 }
 
 /// Least distance of a chosen point from the hull, in distances between the first two points. Higher: narrow
-/// sides lose corners; lower: rounding adds points to a line. Also the share of [`PatchPlan::equal_depth`] that counts as rounding.
+/// sides lose corners; lower: rounding adds points to a line. Also the share of [`PatchPlan::equal_depth`], or of [`PatchPlan::size`]
+/// if less, that counts as rounding.
 const LINE: Real = 1.0e-3;
 
 /// Direction in which the first point is outermost. It is along no side of common meshes.
@@ -302,7 +303,8 @@ impl Outermost {
         self.squares.clear();
         self.squares.resize(points.len(), Real::INFINITY);
         self.hull.clear();
-        let limit = points[0].1 + if plan.far.is_finite() { LINE * plan.equal_depth } else { 0.0 };
+        let rounding = LINE * plan.equal_depth.min(plan.size);
+        let limit = points[0].1 + if plan.far.is_finite() { rounding } else { 0.0 };
         let is_as_deep =
             |i: &usize| points[*i].1 <= limit && normal(*i).dot(normal(0)) >= plan.one_normal;
         let along = |i: &usize| self.flat[*i].dot(ANY_WAY);
