@@ -223,33 +223,38 @@ fn parts_of_centimetres_do_not_cost_the_square_of_their_triangles() {
     }
 }
 
-/// Prints microseconds of casts and distances. A cuboid meets as many triangles at once as are under it. Would catch one
+/// Prints microseconds of casts and distances. A box meets as many triangles at once as are under it. Would catch one
 /// exact test for each triangle.
 #[test]
 #[ignore = "times queries of microseconds"]
 fn flat_shapes_over_a_fine_floor_take_little_longer() {
     const COUNT: u32 = 1000;
-    let (cuboid, dispatcher) = (Cuboid::new(Vec3::splat(0.5)), SbbkDispatcher::default());
+    let dispatcher = SbbkDispatcher::default();
     let pose = |i: u32| Pose::from_translation(Vec3::new(1e-3 * i as f32, 0.7, 0.2));
-    let micros = |floor: &TriMesh, ask: &dyn Fn(Pose, &TriMesh)| {
-        let start = Instant::now();
-        (0..COUNT).for_each(|i| ask(pose(i), floor));
-        1e6 * start.elapsed().as_secs_f64() / f64::from(COUNT)
-    };
-    let cast = |pose: Pose, floor: &TriMesh| {
+    type Ask = fn(&SbbkDispatcher, Pose, &dyn Shape, &dyn Shape) -> Real;
+    let cast: Ask = |dispatcher, pose, floor, body| {
         let options = ShapeCastOptions::with_max_time_of_impact(2.0);
-        let hit = dispatcher.cast_shapes(&pose, Vec3::NEG_Y, floor, &cuboid, options);
-        let time = hit.expect("known shapes").map(|hit| hit.time_of_impact);
-        assert!(time.is_some_and(|time| (time - 0.2).abs() < 1e-6), "{time:?}");
+        let hit = dispatcher.cast_shapes(&pose, Vec3::NEG_Y, floor, body, options);
+        hit.expect("known shapes").expect("an impact").time_of_impact
     };
-    let distance = |pose: Pose, floor: &TriMesh| {
-        let found = dispatcher.distance(&pose, floor, &cuboid).expect("known shapes").distance;
-        assert!((found - 0.2).abs() < 1e-6, "{found}");
+    let distance: Ask = |dispatcher, pose, floor, body| {
+        dispatcher.distance(&pose, floor, body).expect("known shapes").distance
     };
-    for name in ["cast", "distance"] {
-        let ask: &dyn Fn(Pose, &TriMesh) = if name == "cast" { &cast } else { &distance };
-        let [few, many] = [16, 256].map(|cells| micros(&shape(&mesh::floor(8.0, cells)), ask));
-        println!("{name}: {few:.2} us over 512 triangles, {many:.2} over 131,072");
-        assert!(many < 8.0 * few, "{name}: {few:.2} us, {many:.2} us");
+    let cuboid: Box<dyn Shape> = Box::new(Cuboid::new(Vec3::splat(0.5)));
+    let of_mesh: Box<dyn Shape> = Box::new(shape(&mesh::cuboid(Vec3::splat(0.5), 4)));
+    for (body, shape2) in [("cuboid", &cuboid), ("mesh", &of_mesh)] {
+        for (name, ask) in [("cast", cast), ("distance", distance)] {
+            let [few, many] = [16, 256].map(|cells| {
+                let floor = shape(&mesh::floor(8.0, cells));
+                let start = Instant::now();
+                for i in 0..COUNT {
+                    let found = ask(&dispatcher, pose(i), &floor, &**shape2);
+                    assert!((found - 0.2).abs() < 1e-6, "{found}");
+                }
+                1e6 * start.elapsed().as_secs_f64() / f64::from(COUNT)
+            });
+            println!("{name} of a {body}: {few:.2} us over 512 triangles, {many:.2} over 131,072");
+            assert!(many < 8.0 * few, "{name} of a {body}: {few:.2} us, {many:.2} us");
+        }
     }
 }

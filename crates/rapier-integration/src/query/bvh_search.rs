@@ -35,6 +35,10 @@ struct Node {
     triangle: Option<u32>,
 }
 
+/// Difference of distances that counts as none, in [roundings](BvhSearch::rounding). Higher: less exact distances. Lower: searches
+/// visit all pairs of parallel faces.
+const TIES: f64 = 4.0;
+
 impl BvhSearch<'_> {
     /// Returns the first pair of touching triangles that the descent finds.
     pub(super) fn meeting(&self) -> Option<FoundPair> {
@@ -89,18 +93,37 @@ impl BvhSearch<'_> {
             return Some(found);
         }
         let target = f64::from(options.target_distance) + self.rounding();
+        // The normal of the first impact so far, in both frames, and the speed against it.
+        let normals = Cell::new(None::<([DVec3; 2], f64)>);
         let mut first = None::<Cast>;
         let latest = f64::from(options.max_time);
         self.search(
             latest,
-            |one, two| one.time(two, velocity, target),
+            |one, two| {
+                let along = normals.get().map_or(0.0, |(normals, approach)| {
+                    (one.gap_along(two, normals) - target) / approach
+                });
+                one.time(two, velocity, target).max(along)
+            },
             |triangles, latest| {
+                let is_late = |(normals, approach): ([DVec3; 2], f64)| {
+                    self.gap_along(normals, triangles) - target > latest * approach
+                };
+                if normals.get().is_some_and(is_late) {
+                    return None;
+                }
                 let found = cast(triangles, latest)?;
                 if first.is_some_and(|first| found.time >= first.time) {
                     return None;
                 }
                 first = Some(found);
-                Some(if found.time > 0.0 { found.time } else { f64::NEG_INFINITY })
+                let approach = -found.pair.contact.normal.dot(velocity);
+                // A grazing impact has no approach.
+                let tie = TIES * self.rounding() / approach;
+                let is_bound = approach > 0.0 && tie.is_finite();
+                normals.set(is_bound.then(|| (self.normals(&found.pair), approach)));
+                let sooner = found.time - if is_bound { tie } else { 0.0 };
+                Some(if found.time > 0.0 { sooner } else { f64::NEG_INFINITY })
             },
         );
         first
@@ -152,10 +175,7 @@ impl BvhSearch<'_> {
         let normals = Cell::new(None::<[DVec3; 2]>);
         let mut nearest = None::<FoundPair>;
         let bound = |one: &PlacedBox, two: &PlacedBox| {
-            let along = normals.get().map_or(0.0, |[normal1, normal2]| {
-                let reach = normal1.abs().dot(one.extents[0]) + normal2.abs().dot(two.extents[1]);
-                normal1.dot(two.centres[0] - one.centres[0]) - reach
-            });
+            let along = normals.get().map_or(0.0, |normals| one.gap_along(two, normals));
             one.gap(two).max(along) - lost
         };
         self.search(limit, bound, |triangles, limit| {
@@ -175,7 +195,8 @@ impl BvhSearch<'_> {
                 return Some(f64::NEG_INFINITY);
             }
             normals.set(Some(self.normals(&pair)));
-            Some(distance)
+            // Parallel faces have many pairs at the same distance.
+            Some(distance - TIES * lost)
         });
         nearest
     }
@@ -310,6 +331,12 @@ impl PlacedBox {
             (offset - (self.extents[i] + other.extents[i])).max(DVec3::ZERO).length()
         });
         in_frame1.max(in_frame2 * (1.0 - STRETCH))
+    }
+
+    /// Gap along a direction, given in the frames of both meshes.
+    fn gap_along(&self, other: &Self, [normal1, normal2]: [DVec3; 2]) -> f64 {
+        let reach = normal1.abs().dot(self.extents[0]) + normal2.abs().dot(other.extents[1]);
+        normal1.dot(other.centres[0] - self.centres[0]) - reach
     }
 
     /// Earliest time at which the boxes are within `target` of each other, where the other one moves;

@@ -29,8 +29,8 @@ use wide::f32x4;
 
 use crate::contact::{TriangleContact, contact};
 use crate::simd::Spread;
-use crate::traverse::{Along, Compare, NodeLanes, PairFrame, Placement, within};
-use crate::tree::Tree;
+use crate::traverse::{Along, Compare, NodeLanes, PairFrame, Placement, Toward, within};
+use crate::tree::{LeafBatch, Tree};
 use crate::volumes::rounding::gamma;
 
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
@@ -63,6 +63,10 @@ pub struct Cast<P = FoundPair> {
 /// and travel. At this share of the speed it does not approach. Higher: impacts are early by as much. Lower:
 /// rounding keeps them from being noticed before the steps are used up.
 const ARRIVED: f64 = 1.0e-12;
+
+/// Difference of times that counts as none, as a share. Higher: later impacts count. Lower: rounding tells the impacts of
+/// parallel faces apart, and a cast computes all of them.
+const AT_ONCE: f64 = 1.0e-11;
 
 /// Distance at the start, in target distances, up to which a body may slide along the other. Higher: slower casts. Lower: rounding lets bodies that slide catch on edges within walls.
 const NEAR_TARGET: f64 = 1.001;
@@ -98,11 +102,16 @@ pub fn cast(
         inverse_speed: ((1.0 / speed) as f32) * (1.0 - gamma(4)),
         target: target_distance * (1.0 + gamma(4)),
         limit: max_time.min(f32::MAX),
+        first: None,
     };
     // Only earlier impacts matter.
     let (mut latest, mut first) = (f64::from(max_time), None::<Cast>);
     let velocity = velocity.as_dvec3();
     seek(trees, &mut sweep, scratch, |sweep, batch1, batch2| {
+        let are_late = |first: &FirstNormal| first.are_late(latest, batch1, batch2);
+        if sweep.first.as_ref().is_some_and(are_late) {
+            return;
+        }
         for lane1 in 0..batch1.count() {
             for lane2 in 0..batch2.count() {
                 if sweep.limit == FOUND {
@@ -116,6 +125,7 @@ pub fn cast(
                     (first, latest) = (Some(cast), cast.time);
                     let is_later = cast.time > 0.0;
                     sweep.limit = if is_later { (cast.time as f32).next_up() } else { FOUND };
+                    sweep.first = FirstNormal::of(sweep, target_distance, cast.pair.contact.normal);
                 }
             }
         }
@@ -293,6 +303,42 @@ struct Sweep<'a> {
     target: f32,
     /// Later impacts do not matter. Finite, or minus infinity.
     limit: f32,
+    /// The normal of the first impact so far.
+    first: Option<FirstNormal>,
+}
+
+/// A normal of an impact, as a bound of other times. Bodies are within the target distance no sooner than along the normal.
+struct FirstNormal {
+    toward: Toward,
+    /// Distance that counts as an impact.
+    target: f64,
+    /// Speed against the normal.
+    approach: f64,
+    /// Lower bound of one over this speed.
+    inverse_approach: f32,
+}
+
+impl FirstNormal {
+    /// Returns `None` for a grazing impact.
+    fn of(sweep: &Sweep<'_>, target: f32, normal: DVec3) -> Option<Self> {
+        let approach = -normal.dot(sweep.velocity.as_dvec3());
+        let inverse_approach = (1.0 / approach) as f32 * (1.0 - gamma(8));
+        let toward = Toward::new(sweep.frame, normal)?;
+        let is_bound = approach > 0.0 && inverse_approach.is_finite();
+        is_bound.then_some(Self { toward, target: target.into(), approach, inverse_approach })
+    }
+
+    /// Returns true if triangles of two leaves are within the target distance no sooner than at a time.
+    fn are_late(&self, time: f64, batch1: &LeafBatch, batch2: &LeafBatch) -> bool {
+        let way = time * (1.0 - AT_ONCE) * self.approach + self.target;
+        self.toward.are_beyond(way, (way as f32).next_up(), batch1, batch2)
+    }
+
+    #[inline(always)]
+    fn times(&self, target: f32, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
+        let ways = self.toward.gaps(nodes) - f32x4::splat(target);
+        ways * f32x4::splat(self.inverse_approach)
+    }
 }
 
 impl Sweep<'_> {
@@ -324,7 +370,13 @@ impl Compare for Sweep<'_> {
 
     #[inline(always)]
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
-        let times = self.times(nodes);
+        let along = self.first.as_ref().map(|first| first.times(self.target, nodes));
+        let along = along.unwrap_or(f32x4::ZERO);
+        let near = within(self.limit, along, nodes.lanes);
+        if near.0 == 0 {
+            return near;
+        }
+        let times = self.times(nodes).fast_max(along);
         within(self.limit, times, nodes.lanes)
     }
 }

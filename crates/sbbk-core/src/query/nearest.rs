@@ -1,4 +1,7 @@
 //! The nearest or the deepest pair of triangles.
+//!
+//! Where faces are parallel, many pairs are as near as the nearest one, and rounding in `f32` lowers their bounds. Leaves are
+//! therefore compared along the normal of the nearest pair in `f64` ([`Toward::are_beyond`]).
 
 use glamx::{DVec3, Vec3};
 use wide::f32x4;
@@ -153,8 +156,8 @@ impl NearestSearch<'_> {
     }
 
     fn leaves(&mut self, gaps: &mut SignedGaps<'_>, batch1: &LeafBatch, batch2: &LeafBatch) {
-        let toward = gaps.toward.as_ref();
-        if toward.is_some_and(|t| t.gap_of_leaves(batch1, batch2) > gaps.limit) {
+        let are_beyond = |toward: &Toward| toward.are_beyond(self.best, gaps.limit, batch1, batch2);
+        if gaps.toward.as_ref().is_some_and(are_beyond) {
             return;
         }
         let test = self.test.within(gaps.limit);
@@ -236,6 +239,29 @@ mod tests {
                 let (_, counts) = search((&tree, &tree), placement, limit, goal, &mut scratch);
                 assert!(counts[0] < 8000 && counts[1] < 600, "{counts:?} at {distance}");
             }
+        }
+    }
+
+    /// A plane over another one, with 64 and 16,384 cells. Would catch exact tests of all pairs that are equally near.
+    #[test]
+    fn few_triangles_of_parallel_faces_are_compared() {
+        let plane = |cells: u32, size: f32| -> Tree {
+            let at = |i: u32| size * (i as f32 / cells as f32 - 0.5);
+            let places = (0..=cells).flat_map(|i| (0..=cells).map(move |j| [i, j]));
+            let vertices: Vec<_> = places.map(|[i, j]| Vec3::new(at(i), 0.0, at(j))).collect();
+            let corners = (0..cells).flat_map(|i| (0..cells).map(move |j| i * (cells + 1) + j));
+            let cell = |a: u32| [[a, a + 1, a + cells + 1], [a + 1, a + cells + 2, a + cells + 1]];
+            let triangles: Vec<_> = corners.flat_map(cell).collect();
+            Tree::build(&vertices, &triangles, &BuildOptions::default()).unwrap()
+        };
+        let (large, small) = (plane(128, 2.0), plane(8, 0.7));
+        let placement = Placement::new(&Pose3::translation(0.1, 1.4, 0.2));
+        let mut scratch = SearchScratch::default();
+        for trees in [(&large, &small), (&small, &large)] {
+            let (found, counts) =
+                search(trees, placement, f64::INFINITY, Goal::Nearest, &mut scratch);
+            let distance = found.unwrap().contact.distance;
+            assert!((distance - 1.4).abs() < 1e-6 && counts[1] < 64, "{distance}, {counts:?}");
         }
     }
 }

@@ -107,10 +107,8 @@ impl Compare for SignedGaps<'_> {
 
     #[inline(always)]
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
-        let along = match (&self.toward, &nodes.kdops) {
-            (Some(toward), Some(kdops)) => toward.gaps(kdops),
-            _ => f32x4::splat(f32::NEG_INFINITY),
-        };
+        let along = self.toward.as_ref().map(|toward| toward.gaps(nodes));
+        let along = along.unwrap_or(f32x4::splat(f32::NEG_INFINITY));
         self.count += nodes.lanes.count_ones();
         let near = within(self.limit, along, nodes.lanes);
         if near.0 == 0 {
