@@ -3,7 +3,7 @@
 //! `cargo test --release --test integration growth -- --ignored --nocapture` prints the table.
 
 use crate::prelude::*;
-use rapier3d::parry::shape::Ball;
+use rapier3d::parry::shape::{Ball, Capsule};
 use std::time::Instant;
 
 /// A mesh so many times at one place.
@@ -107,6 +107,26 @@ const FAMILIES: &[Family] = &[
         let half = |i: u32| Vec3::splat(6.0 * (i + 1) as f32 / count as f32);
         let nest = boxes((0..count / 12).map(|i| (Vec3::ZERO, half(i))));
         on_slab(&nest, [0.1, 0.501, 0.2])
+    }),
+    ("copies of a fan and a ball", |count| {
+        case(&layers(&fan(12, 0.0), count / 12), Ball::new(0.4), Vec3::new(0.11, 0.39, 0.07))
+    }),
+    ("copies of a fan and a capsule", |count| {
+        let capsule = Capsule::new_x(0.2, 0.3);
+        case(&layers(&fan(12, 0.0), count / 12), capsule, Vec3::new(0.11, 0.29, 0.07))
+    }),
+    ("disc of two fans in a cuboid", |count| {
+        let [top, bottom] = [0.1, -0.1].map(|height| Vec2::new(0.0, height));
+        let disc = mesh::revolved(&[bottom, Vec2::X, top], count / 2);
+        case(&disc, Cuboid::new(Vec3::splat(0.4)), Vec3::new(0.11, 0.37, 0.07))
+    }),
+    ("pages at one edge in a cuboid", |count| {
+        let page = |i: u32| {
+            let turn = Quat::from_rotation_y(TAU * i as f32 / count as f32);
+            Mesh::new("page", vec![-Vec3::Y, Vec3::Y, turn * Vec3::X], vec![[0, 1, 2]])
+        };
+        let book = Mesh::merged("book", &(0..count).map(page).collect::<Vec<Mesh>>());
+        case(&book, Cuboid::new(Vec3::splat(0.4)), Vec3::new(0.01, 0.02, 0.03))
     }),
     ("layers and a cuboid", |count| {
         let slab = layers(&slab(), count / 12);

@@ -27,6 +27,7 @@
 //! no such neighbour explains is compared with all triangles at its point
 //! ([`strays`](sbbk_core::surface::strays)).
 
+use std::collections::HashMap;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glamx::{DVec3, Vec3};
@@ -39,8 +40,9 @@ use super::contact::{Hit, PartContact};
 /// features replace exact points. Lower: rounding picks one of two equal contacts at a common edge as the ghost.
 pub(super) const ROUNDED: f64 = 1.0e-12;
 
-/// Contacts at a feature that may be of a floor. Higher: slow at the hub of a fan. Lower: walls are ghosts where many triangles meet.
-const MOST_FLOORS: usize = 64;
+/// Number of contacts at a corner up to which all are looked at for each other. Beyond it an edge has a [`Place`]. Higher: slow
+/// at the hub of a fan. Lower: walls are ghosts where many triangles meet.
+const MANY: usize = 64;
 
 /// Memory for the search: the contacts by the corners of their triangles.
 #[derive(Default)]
@@ -48,6 +50,8 @@ pub(crate) struct GhostContacts {
     /// Key of a corner, contact, and number of the corner in the contact's triangle; sorted.
     entries: Vec<u128>,
     corners: Vec<Corner>,
+    /// Edges with many triangles at both ends, by their corners.
+    edges: HashMap<[u32; 2], Place>,
     /// Indices of the corners of each contact's triangle.
     triangles: Vec<[u32; 3]>,
     /// For each contact the one whose normal it takes.
@@ -82,14 +86,25 @@ pub(super) struct UprightContact {
 struct Corner {
     /// First of [`GhostContacts::entries`]. The next corner's first one is the end.
     start: u32,
+    place: Place,
+}
+
+/// What is known of the contacts at a vertex, or at an edge of many triangles.
+struct Place {
     /// The contact with the least distance.
     nearest: u32,
-    /// A contact at this corner, and the result of `is_exceeded` for it.
+    /// A contact here, and the result of `is_exceeded` for it.
     exceeded: Option<(u32, bool)>,
-    /// Strays of the first contact at this corner that had to know.
+    /// Strays of the first contact here that had to know.
     strays: Option<Strays>,
     /// True if a triangle has an edge here that no other contact has.
     is_border: Option<bool>,
+}
+
+impl Place {
+    fn new(nearest: u32) -> Self {
+        Self { nearest, exceeded: None, strays: None, is_border: None }
+    }
 }
 
 /// Contacts of other triangles at the point of a contact.
@@ -126,6 +141,13 @@ fn distance(contacts: &[Hit], index: u32) -> f64 {
 fn nearest_of(contacts: &[Hit], first: u32, others: impl IntoIterator<Item = u32>) -> u32 {
     let is_nearer = |a: u32, b: u32| distance(contacts, b) < distance(contacts, a);
     others.into_iter().fold(first, |a, b| if is_nearer(a, b) { b } else { a })
+}
+
+/// Returns true if two contacts have the same place and normal, up to rounding.
+fn are_same(a: &ConvexContact, b: &ConvexContact) -> bool {
+    let size = a.on_triangle.abs().max_element();
+    a.on_triangle.distance(b.on_triangle) <= ROUNDED * size
+        && a.normal.distance(b.normal) <= ROUNDED
 }
 
 /// Returns false if no two contacts have normals more than a right angle apart.
@@ -172,7 +194,7 @@ impl GhostContacts {
             if !is_nearer(nearest) {
                 let strays = self.strays_of(contacts, contact, &mut find_strays);
                 nearest = nearest_of(contacts, nearest, [strays.nearest]);
-                if !strays.are_apart && self.is_border(contact, *feature) {
+                if !strays.are_apart && self.is_border(contacts, contact, *feature) {
                     self.borders.push(contact);
                 }
                 range = strays.range;
@@ -202,7 +224,7 @@ impl GhostContacts {
     ) -> Option<ConvexContact> {
         let (of, PartContact { contact: own, feature, .. }) = &contacts[contact as usize];
         let others = self.at_feature(contact, *feature).chain(self.strays_in(strays));
-        let others = others.take(MOST_FLOORS).map(|other| &contacts[other as usize]);
+        let others = others.take(MANY).map(|other| &contacts[other as usize]);
         let mut floors = others.filter(|(_, it)| it.contact.normal.dot(own.normal) < 0.0);
         floors.find_map(|floor| find_wall(*of, floor))
     }
@@ -227,7 +249,7 @@ impl GhostContacts {
         self.borders.clear();
         self.sources.clear();
         self.sources.extend(0..contacts.len() as u32);
-        let Self { entries, corners, triangles, .. } = self;
+        let Self { entries, corners, edges, triangles, .. } = self;
         entries.clear();
         for (contact, (of, _)) in (0..).zip(contacts) {
             let corners = (0..).zip(keys(*of));
@@ -235,18 +257,18 @@ impl GhostContacts {
         }
         entries.sort_unstable();
         corners.clear();
+        edges.clear();
         triangles.clear();
         triangles.resize(contacts.len(), [0; 3]);
         let mut last_key = None;
         for (start, &entry) in (0..).zip(&*entries) {
             let nearest = contact_of(entry);
             if last_key.replace(entry >> 64) != Some(entry >> 64) {
-                let (exceeded, strays, is_border) = (None, None, None);
-                corners.push(Corner { start, nearest, exceeded, strays, is_border });
+                corners.push(Corner { start, place: Place::new(nearest) });
             }
             let corner = corners.len() - 1;
             triangles[nearest as usize][usize::from(entry as u8)] = corner as u32;
-            let known = &mut corners[corner].nearest;
+            let known = &mut corners[corner].place.nearest;
             *known = nearest_of(contacts, *known, [nearest]);
         }
     }
@@ -267,16 +289,32 @@ impl GhostContacts {
         shorter.filter(has_other)
     }
 
-    /// Returns the contact with the least distance at the feature of a contact.
-    fn nearest(&self, contacts: &[Hit], contact: u32, feature: Feature) -> u32 {
-        if let Feature::Vertex(i) = feature {
-            let corner = self.triangles[contact as usize][usize::from(i)];
-            return self.corners[corner as usize].nearest;
+    /// Returns the place of a contact, unless it is at an edge of few triangles.
+    fn place(&mut self, contacts: &[Hit], contact: u32, feature: Feature) -> Option<&mut Place> {
+        let ends = ends(feature).map(|end| self.triangles[contact as usize][end]);
+        if let Feature::Vertex(_) = feature {
+            return Some(&mut self.corners[ends[0] as usize].place);
         }
-        nearest_of(contacts, contact, self.at_feature(contact, feature))
+        if ends.iter().any(|&end| self.at_corner(end).len() <= MANY) {
+            return None;
+        }
+        let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        if !self.edges.contains_key(&key) {
+            let nearest = nearest_of(contacts, contact, self.at_feature(contact, feature));
+            self.edges.insert(key, Place::new(nearest));
+        }
+        self.edges.get_mut(&key)
     }
 
-    /// Finds the strays of a contact. All contacts at a vertex have the same strays.
+    /// Returns the contact with the least distance at the feature of a contact.
+    fn nearest(&mut self, contacts: &[Hit], contact: u32, feature: Feature) -> u32 {
+        match self.place(contacts, contact, feature) {
+            Some(place) => place.nearest,
+            None => nearest_of(contacts, contact, self.at_feature(contact, feature)),
+        }
+    }
+
+    /// Finds the strays of a contact. All contacts at a [`Place`] have the same strays.
     fn strays_of(
         &mut self,
         contacts: &[Hit],
@@ -284,11 +322,8 @@ impl GhostContacts {
         find_strays: &mut impl FnMut(&Hit, &mut Vec<u32>),
     ) -> Strays {
         let hit = &contacts[contact as usize];
-        let at = match hit.1.feature {
-            Feature::Vertex(i) => Some(self.triangles[contact as usize][usize::from(i)]),
-            _ => None,
-        };
-        if let Some(strays) = at.and_then(|corner| self.corners[corner as usize].strays) {
+        let place = self.place(contacts, contact, hit.1.feature);
+        if let Some(strays) = place.and_then(|place| place.strays) {
             return strays;
         }
         let start = self.kept_strays;
@@ -300,8 +335,8 @@ impl GhostContacts {
             |other: u32| !ends.iter().any(|end| self.triangles[other as usize].contains(end));
         let nearest = nearest_of(contacts, contact, self.strays_in(range));
         let strays = Strays { range, nearest, are_apart: self.strays_in(range).any(is_apart) };
-        if let Some(corner) = at {
-            self.corners[corner as usize].strays = Some(strays);
+        if let Some(place) = self.place(contacts, contact, hit.1.feature) {
+            place.strays = Some(strays);
             self.kept_strays = range[1];
         }
         strays
@@ -313,23 +348,28 @@ impl GhostContacts {
     }
 
     /// Returns true if an edge is of one triangle only, or a vertex at the end of such an edge.
-    fn is_border(&mut self, contact: u32, feature: Feature) -> bool {
-        let Feature::Vertex(i) = feature else {
-            return self.at_feature(contact, feature).nth(1).is_none();
-        };
-        let corner = self.triangles[contact as usize][usize::from(i)];
-        if let Some(is_border) = self.corners[corner as usize].is_border {
+    fn is_border(&mut self, contacts: &[Hit], contact: u32, feature: Feature) -> bool {
+        let place = self.place(contacts, contact, feature);
+        if let Some(is_border) = place.and_then(|place| place.is_border) {
             return is_border;
         }
-        let has_border = |of: u32| {
-            let corners = self.triangles[of as usize];
-            let edges = (0..3_u8).filter(|&i| {
-                [i, (i + 1) % 3].iter().any(|&end| corners[usize::from(end)] == corner)
-            });
-            edges.into_iter().any(|i| self.at_feature(of, Feature::Edge(i)).nth(1).is_none())
+        let is_single = |of: u32, edge: Feature| self.at_feature(of, edge).nth(1).is_none();
+        let is_border = if let Feature::Vertex(i) = feature {
+            let corner = self.triangles[contact as usize][usize::from(i)];
+            let has_border = |of: u32| {
+                let corners = self.triangles[of as usize];
+                let edges = (0..3_u8).filter(|&i| {
+                    [i, (i + 1) % 3].iter().any(|&end| corners[usize::from(end)] == corner)
+                });
+                edges.into_iter().any(|i| is_single(of, Feature::Edge(i)))
+            };
+            self.at_corner(corner).any(has_border)
+        } else {
+            is_single(contact, feature)
         };
-        let is_border = self.at_corner(corner).any(has_border);
-        self.corners[corner as usize].is_border = Some(is_border);
+        if let Some(place) = self.place(contacts, contact, feature) {
+            place.is_border = Some(is_border);
+        }
         is_border
     }
 
@@ -342,32 +382,30 @@ impl GhostContacts {
         extends_beyond: &mut impl FnMut([u32; 2], &ConvexContact) -> bool,
     ) -> bool {
         let PartContact { contact: ref own, feature, .. } = contacts[contact as usize].1;
-        let [one, _] = ends(feature).map(|end| self.triangles[contact as usize][end]);
-        // All triangles at a vertex that is deepest have the same contact.
-        if let (Feature::Vertex(_), Some((other, is_exceeded))) =
-            (feature, self.corners[one as usize].exceeded)
+        // All triangles at a place that is deepest have the same contact.
+        let place = self.place(contacts, contact, feature);
+        if let Some((other, is_exceeded)) = place.and_then(|place| place.exceeded)
+            && are_same(own, &contacts[other as usize].1.contact)
         {
-            let other = &contacts[other as usize].1.contact;
-            if (other.on_triangle, other.normal) == (own.on_triangle, own.normal) {
-                return is_exceeded;
-            }
+            return is_exceeded;
         }
         let is_exceeded = self
             .at_feature(contact, feature)
             .chain(self.strays_in(strays))
             .any(|other| extends_beyond(contacts[other as usize].0, own));
-        if let Feature::Vertex(_) = feature {
-            self.corners[one as usize].exceeded = Some((contact, is_exceeded));
+        if let Some(place) = self.place(contacts, contact, feature) {
+            place.exceeded = Some((contact, is_exceeded));
         }
         is_exceeded
     }
 
-    /// Lists a contact and then all others whose triangles share a corner with its triangle.
+    /// Lists a contact and then others whose triangles share a corner with its triangle: up to [`MANY`] at each corner and edge.
     pub(super) fn list_nearby(&mut self, contact: u32) {
         let mut nearby = std::mem::take(&mut self.nearby);
         nearby.clear();
-        for corner in self.triangles[contact as usize] {
-            nearby.extend(self.at_corner(corner));
+        for (i, corner) in (0..).zip(self.triangles[contact as usize]) {
+            nearby.extend(self.at_corner(corner).take(MANY));
+            nearby.extend(self.at_feature(contact, Feature::Edge(i)).take(MANY));
         }
         nearby.sort_unstable_by_key(|&other| (other != contact, other));
         nearby.dedup();
