@@ -29,16 +29,15 @@ impl Cast<'_> {
     /// error of that.
     fn approach(&self, pair: &TruthPair) -> (f32, f32) {
         let [motion1, motion2] = &self.motions;
-        let [triangle1, triangle2] =
-            [self.meshes[0].triangle(pair.triangle1), self.meshes[1].triangle(pair.triangle2)];
+        let triangles = [0, 1].map(|i| self.meshes[i].triangle(pair.triangles[i]));
         let start1 = motion1.position_at_time(0.0);
-        let point = start1 * triangle1.center();
+        let point = start1 * triangles[0].center();
         let velocity = |motion: &NonlinearRigidMotion| {
             let centre = motion.start * motion.local_center;
             motion.linvel + motion.angvel.cross(point - centre)
         };
         let normal = start1.rotation * pair.normal.as_vec3();
-        let sizes = [triangle1, triangle2].map(|t| t.local_aabb().extents().length());
+        let sizes = triangles.map(|t| t.local_aabb().extents().length());
         let spin = (motion2.angvel - motion1.angvel).length();
         let speed = -(velocity(motion2) - velocity(motion1)).dot(normal);
         (speed, spin * (sizes[0] + sizes[1]) + 1e-3)
@@ -55,7 +54,7 @@ impl Cast<'_> {
         };
         let approaches = |pair: &TruthPair| self.approach(pair).0 > 0.0;
         let is_sure = |pair: &TruthPair| is_touching(pair) && clear(pair);
-        let names = near.iter().map(|pair| [pair.triangle1, pair.triangle2]).collect();
+        let names = near.iter().map(|pair| pair.triangles).collect();
         if near.iter().any(|pair| is_sure(pair) && approaches(pair)) {
             return Some((true, names));
         }
@@ -114,7 +113,7 @@ fn casts_from_contact_are_true() {
             continue;
         }
         let others = |time: f32, distance: f32| -> Vec<TruthPair> {
-            let is_other = |pair: &TruthPair| !touching.contains(&[pair.triangle1, pair.triangle2]);
+            let is_other = |pair: &TruthPair| !touching.contains(&pair.triangles);
             cast.truth(time, distance).into_iter().filter(is_other).collect()
         };
         let end = hit.map_or(1.0, |hit| hit.time_of_impact);
@@ -129,7 +128,7 @@ fn casts_from_contact_are_true() {
         assert_eq!(hit.status, ShapeCastStatus::Converged);
         let found = [hit.subshape1, hit.subshape2];
         let near = others(end, slack);
-        assert!(near.iter().any(|pair| [pair.triangle1, pair.triangle2] == found), "case {seed}");
+        assert!(near.iter().any(|pair| pair.triangles == found), "case {seed}");
         assert!((cast.pos12(end) * hit.witness2 - hit.witness1).length() < 2.0 * slack);
         later += usize::from(!touching.is_empty());
     }

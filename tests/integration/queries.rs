@@ -54,9 +54,8 @@ fn proximity_is_true() {
                 let reported = dispatcher.distance(&pos12, meshes[0], meshes[1]).unwrap().distance;
                 // Were the distance less than the truth, this would be infinite.
                 let pairs = truth(meshes, &pos12, 0.21 * size + 1.01 * reported);
-                let near = |pair: &&TruthPair, of| [pair.triangle1, pair.triangle2] == of;
                 let of = |of: [u32; 2]| {
-                    let pair = pairs.iter().find(|pair| near(pair, of));
+                    let pair = pairs.iter().find(|pair| pair.triangles == of);
                     pair.map_or(f64::INFINITY, |pair| pair.distance)
                 };
                 let least = pairs.iter().map(|pair| pair.distance).fold(f64::INFINITY, f64::min);

@@ -1,18 +1,16 @@
 //! Brute force in f64.
 
 use crate::prelude::*;
-use glamx::{DPose3, DVec3};
+use glamx::DPose3;
 use rapier3d::parry::query::ContactManifold;
+use rapier3d::parry::shape::Triangle;
 use sbbk_testkit::judge::{Errors, Truth};
 use sbbk_truth::{TruthPair, pairs_within};
 
 /// Pairs of triangles of two meshes at a distance of at most `margin`.
 pub fn of_meshes(meshes: [&TriMesh; 2], pos12: DPose3, margin: f64) -> Vec<TruthPair> {
-    let [(v1, t1), (v2, t2)] = meshes.map(|mesh| {
-        let vertices: Vec<DVec3> = mesh.vertices().iter().map(|v| v.as_dvec3()).collect();
-        (vertices, mesh.indices())
-    });
-    pairs_within(&v1, t1, &v2, t2, pos12, margin)
+    let corners = |triangle: Triangle| triangle.vertices().map(|corner| corner.as_dvec3());
+    pairs_within(meshes.map(|mesh| mesh.triangles().map(corners)), pos12, margin)
 }
 
 /// A pose in f64 whose quaternion has length one.

@@ -59,7 +59,7 @@ impl AddAssign for Errors {
 /// All true contacts of two shapes at a pose, by their subshapes.
 pub struct Truth {
     /// Normals point out of the shape number `side`, in its frame.
-    contacts: HashMap<(u32, u32), ConvexTruth>,
+    contacts: HashMap<[u32; 2], ConvexTruth>,
     side: usize,
     prediction: Real,
     bands: [f64; 2],
@@ -75,9 +75,9 @@ impl Truth {
     pub fn of([shape1, shape2]: [&SharedShape; 2], pos12: &Pose, prediction: Real) -> Self {
         match (shape1.as_trimesh(), shape2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
-                let one = Near::new(mesh1, shape2, pos12, prediction);
-                let two = Near::new(mesh2, shape1, &pos12.inverse(), prediction);
-                Self::of_meshes([one, two], pos12, prediction)
+                let one = near(mesh1, shape2, pos12, prediction);
+                let two = near(mesh2, shape1, &pos12.inverse(), prediction);
+                Self::of_meshes([&one, &two], pos12, prediction)
             }
             (Some(mesh), None) => Self::of_parts(mesh, shape2, pos12, true, prediction),
             (None, Some(mesh)) => Self::of_parts(mesh, shape1, pos12, false, prediction),
@@ -85,15 +85,12 @@ impl Truth {
         }
     }
 
-    fn of_meshes([one, two]: [Near; 2], pos12: &Pose, prediction: Real) -> Self {
+    fn of_meshes(near: [&[Corners]; 2], pos12: &Pose, prediction: Real) -> Self {
         let margin = f64::from(prediction) * (1.0 + SET_BAND);
-        let [(vertices1, triangles1), (vertices2, triangles2)] = [&one, &two].map(Near::flat);
-        let pose = DPose3::from(*pos12);
-        let pairs = pairs_within(&vertices1, &triangles1, &vertices2, &triangles2, pose, margin);
-        let pairs = pairs.into_iter().map(|pair| TruthPair {
-            triangle1: one.indices[pair.triangle1 as usize],
-            triangle2: two.indices[pair.triangle2 as usize],
-            ..pair
+        let corners = near.map(|near| near.iter().map(|&(_, corners)| corners));
+        let pairs = pairs_within(corners, DPose3::from(*pos12), margin).into_iter().map(|pair| {
+            let triangles = [0, 1].map(|i| near[i][pair.triangles[i] as usize].0);
+            TruthPair { triangles, ..pair }
         });
         Self::of_pairs(pairs, prediction)
     }
@@ -103,7 +100,7 @@ impl Truth {
         let contacts = pairs.into_iter().map(|pair| {
             let normals = pair.normal_is_unique.then_some(pair.normal).into_iter().collect();
             let truth = ConvexTruth { distance: pair.distance, normals };
-            ((pair.triangle1, pair.triangle2), truth)
+            (pair.triangles, truth)
         });
         Self { contacts: contacts.collect(), side: 0, prediction, bands: MESH_BANDS }
     }
@@ -126,13 +123,12 @@ impl Truth {
         let mut contacts = HashMap::new();
         for (part_index, (place, part)) in (0..).zip(parts) {
             let (body, to_part) = (convex_body(part), affine(place).inverse() * to_shape);
-            let near = Near::new(mesh, part, &(pose * *place), prediction);
-            for (index, corners) in near.indices.into_iter().zip(near.corners) {
+            for (index, corners) in near(mesh, part, &(pose * *place), prediction) {
                 let found = body.contact(&corners.map(|corner| to_part.transform_point3(corner)));
                 if found.distance <= reach {
                     let normals = found.normals.into_iter().map(|normal| -normal).collect();
-                    let (one, two) = (index, part_index);
-                    let pair = if is_mesh_first { (one, two) } else { (two, one) };
+                    let pair = [index, part_index];
+                    let pair = if is_mesh_first { pair } else { [part_index, index] };
                     contacts.insert(pair, ConvexTruth { normals, ..found });
                 }
             }
@@ -150,7 +146,7 @@ impl Truth {
         let mut seen = HashSet::new();
         let mut errors = Errors { pairs: 1, ..Errors::default() };
         for (manifold, distance) in self.reported(manifolds) {
-            let key = (manifold.subshape1, manifold.subshape2);
+            let key = [manifold.subshape1, manifold.subshape2];
             let is_new = seen.insert(key);
             match self.contacts.get(&key) {
                 Some(truth) if is_new => {
@@ -181,7 +177,7 @@ impl Truth {
     pub fn judge_surfaces<M, C>(&self, manifolds: &[ContactManifold<M, C>]) -> Errors {
         let band = self.bands[0] * f64::from(self.prediction);
         let is_wrong = |(manifold, distance): &(&ContactManifold<M, C>, f64)| {
-            let truth = self.contacts.get(&(manifold.subshape1, manifold.subshape2));
+            let truth = self.contacts.get(&[manifold.subshape1, manifold.subshape2]);
             *distance > 0.0 && truth.is_some_and(|truth| *distance < truth.distance - band)
         };
         let is_crossing = self.contacts.values().any(|truth| truth.distance < -band);
@@ -212,27 +208,14 @@ fn is_one_of(right: &[DVec3], normal: Vec3) -> bool {
     right.is_empty() || right.iter().any(|right| angle(right) <= NORMAL_BAND)
 }
 
-/// The triangles of a mesh near a shape.
-struct Near {
-    indices: Vec<u32>,
-    corners: Vec<[DVec3; 3]>,
-}
+/// Index and corners of a triangle.
+type Corners = (u32, [DVec3; 3]);
 
-impl Near {
-    /// Finds the triangles near the box of a shape at a pose in the frame of the mesh.
-    fn new(mesh: &TriMesh, other: &SharedShape, pose: &Pose, prediction: Real) -> Self {
-        let bounds = other.compute_aabb(pose).loosened(2.0 * prediction);
-        let indices: Vec<u32> = mesh.bvh().intersect_aabb(&bounds).collect();
-        let corners = indices.iter().map(|&index| mesh.triangle(index).vertices().to_owned());
-        let corners = corners.map(|corners| corners.map(|corner| corner.as_dvec3())).collect();
-        Self { indices, corners }
-    }
-
-    /// Returns vertices and triangles, without shared vertices.
-    fn flat(&self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-        let triangles = (0..self.corners.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
-        (self.corners.concat(), triangles.collect())
-    }
+/// Finds the triangles near the box of a shape at a pose in the frame of the mesh.
+fn near(mesh: &TriMesh, other: &SharedShape, pose: &Pose, prediction: Real) -> Vec<Corners> {
+    let bounds = other.compute_aabb(pose).loosened(2.0 * prediction);
+    let corners = |index| mesh.triangle(index).vertices().map(|corner| corner.as_dvec3());
+    mesh.bvh().intersect_aabb(&bounds).map(|index| (index, corners(index))).collect()
 }
 
 #[cfg(test)]
@@ -246,7 +229,7 @@ mod tests {
     /// distances and the normal `Y`; reported ones have a triangle, a distance and a normal.
     fn errors(truth: &[f64], reported: &[(u32, Real, Vec3)]) -> [usize; 4] {
         let contacts = (0..).zip(truth).map(|(triangle, &distance)| {
-            ((triangle, 7), ConvexTruth { distance, normals: vec![DVec3::Y] })
+            ([triangle, 7], ConvexTruth { distance, normals: vec![DVec3::Y] })
         });
         let contacts = contacts.collect();
         let truth = Truth { contacts, side: 0, prediction: 0.02, bands: MESH_BANDS };

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use glamx::{DPose3, DVec3, Pose3, Vec3};
+use glamx::{DPose3, Pose3, Vec3};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
-use parry3d::shape::{Ball, TriMesh};
+use parry3d::shape::{Ball, TriMesh, Triangle};
 use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
 use sbbk_truth::{TruthPair, pairs_within};
 
@@ -14,10 +14,9 @@ fn ball(radius: f32) -> TriMesh {
 }
 
 fn truth(meshes: [&TriMesh; 2], pos12: &Pose3, margin: f64) -> Vec<TruthPair> {
-    let [vertices1, vertices2] =
-        meshes.map(|mesh| mesh.vertices().iter().map(|v| v.as_dvec3()).collect::<Vec<DVec3>>());
-    let [triangles1, triangles2] = meshes.map(TriMesh::indices);
-    pairs_within(&vertices1, triangles1, &vertices2, triangles2, DPose3::from(*pos12), margin)
+    let corners = |triangle: Triangle| triangle.vertices().map(|corner| corner.as_dvec3());
+    let meshes = meshes.map(|mesh| mesh.triangles().map(corners));
+    pairs_within(meshes, DPose3::from(*pos12), margin)
 }
 
 /// Two balls that come close, overlap and turn, in one workspace: the contacts are those of all
@@ -46,14 +45,12 @@ fn contacts_of_two_meshes_are_true() {
         let truth = truth([&one, &two], &pos12, f64::from(1.01 * PREDICTION));
         for pair in &truth {
             let is_clear = (pair.distance - f64::from(PREDICTION)).abs() > 1e-5;
-            let is_found = found.contains(&[pair.triangle1, pair.triangle2]);
+            let is_found = found.contains(&pair.triangles);
             assert!(!is_clear || is_found == (pair.distance < f64::from(PREDICTION)), "{pair:?}");
         }
         for manifold in &manifolds {
-            let is_this = |p: &&TruthPair| {
-                [p.triangle1, p.triangle2] == [manifold.subshape1, manifold.subshape2]
-            };
-            let pair = truth.iter().find(is_this).expect("close");
+            let triangles = [manifold.subshape1, manifold.subshape2];
+            let pair = truth.iter().find(|pair| pair.triangles == triangles).expect("close");
             let least =
                 manifold.points.iter().map(|point| point.dist).fold(f32::INFINITY, f32::min);
             assert!((f64::from(least) - pair.distance).abs() < 1e-5, "{least} and {pair:?}");

@@ -29,7 +29,7 @@ fn tree(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree {
 
 fn truth(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> BTreeSet<(u32, u32)> {
     let pairs = pairs_within([soup1, soup2], (*pos12).into(), margin.into()).into_iter();
-    pairs.map(|pair| (pair.triangle1, pair.triangle2)).collect()
+    pairs.map(|pair| pair.triangles.into()).collect()
 }
 
 /// All plans find a superset of the truth. Returns the number of true pairs.

@@ -1,6 +1,6 @@
 //! `contacts` as whole sets of pairs.
 
-use super::{pairs_within, tree, triangle, triangles_of};
+use super::{pairs_within, tree, triangle};
 use crate::prelude::*;
 use sbbk_core::query::contacts;
 
@@ -16,7 +16,7 @@ fn found(meshes: [&Soup; 2], pose: &Pose3, margin: f64) -> Vec<FoundPair> {
 
 fn truth(meshes: [&Soup; 2], pose: &Pose3, margin: f64) -> Distances {
     let pairs = pairs_within(meshes, (*pose).into(), margin);
-    pairs.iter().map(|pair| (triangles_of(pair), pair.distance)).collect()
+    pairs.iter().map(|pair| (pair.triangles, pair.distance)).collect()
 }
 
 /// Compares the pairs with brute force and returns their number.

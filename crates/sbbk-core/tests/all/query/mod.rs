@@ -7,6 +7,7 @@ mod nearest;
 
 use crate::prelude::*;
 use glamx::DPose3;
+use sbbk_core::surface::RayTriangles;
 use sbbk_truth::{self as truth, TruthPair};
 
 fn tree(soup: &Soup) -> Tree {
@@ -23,9 +24,9 @@ fn exact(pose: &Pose3) -> DPose3 {
 }
 
 /// All pairs of triangles up to a distance, mesh 2 at `pose`.
-pub fn pairs_within([one, two]: [&Soup; 2], pose: DPose3, distance: f64) -> Vec<TruthPair> {
-    let wide = |soup: &Soup| soup.vertices.iter().map(|v| v.as_dvec3()).collect::<Vec<DVec3>>();
-    truth::pairs_within(&wide(one), &one.triangles, &wide(two), &two.triangles, pose, distance)
+pub fn pairs_within(meshes: [&Soup; 2], pose: DPose3, distance: f64) -> Vec<TruthPair> {
+    let corners = meshes.map(|soup| (0..soup.count()).map(|triangle| soup.corners(triangle)));
+    truth::pairs_within(corners, pose, distance)
 }
 
 /// All pairs of triangles, mesh 2 at `pose` and moved by `shift`.
@@ -39,10 +40,6 @@ fn least(pairs: &[TruthPair]) -> f64 {
     pairs.iter().map(|pair| pair.distance).fold(f64::INFINITY, f64::min)
 }
 
-fn triangles_of(pair: &TruthPair) -> [u32; 2] {
-    [pair.triangle1, pair.triangle2]
-}
-
 fn distance_of(pairs: &[TruthPair], triangles: [u32; 2]) -> f64 {
-    pairs.iter().find(|pair| triangles_of(pair) == triangles).expect("triangles exist").distance
+    pairs.iter().find(|pair| pair.triangles == triangles).expect("triangles exist").distance
 }

@@ -1,6 +1,6 @@
 //! Conservative advancement of meshes that move and turn, from apart and from contact.
 
-use super::{all_pairs, exact, least, pairs_within, tree, triangle, triangles_of};
+use super::{all_pairs, exact, least, pairs_within, tree, triangle};
 use crate::prelude::*;
 use sbbk_core::query::{Advance, AdvanceOptions, MeshBodies, advance, advance_from_contact};
 use sbbk_truth::TruthPair;
@@ -143,10 +143,10 @@ fn advancement_from_contact_agrees_with_a_march() {
             at_start += 1;
             continue;
         }
-        let left_out: Vec<_> = touching.iter().map(triangles_of).collect();
+        let left_out: Vec<_> = touching.iter().map(|pair| pair.triangles).collect();
         let others = |time: f64, margin: f64| -> Vec<[u32; 2]> {
             let all = pairs_within(meshes, exact(&motion.at(time)), margin);
-            all.iter().map(triangles_of).filter(|pair| !left_out.contains(pair)).collect()
+            all.iter().map(|pair| pair.triangles).filter(|pair| !left_out.contains(pair)).collect()
         };
         let end = hit.map_or(1.0, |hit| hit.time);
         for time in (0..40).map(|step| end * f64::from(step) / 40.0) {
