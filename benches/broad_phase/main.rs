@@ -12,18 +12,15 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
 use sbbk_core::broad_phase::Bounds;
 
-use candidate::{Candidate, IndexPair, Parry, Sbbk};
+use candidate::{Candidate, IndexPair, parry, sbbk};
 use scenes::SCENES;
 
 /// Rapier's default prediction distance for objects of about one unit.
 const MARGIN: f32 = 0.02;
 
-type Constructor = fn(f32) -> Box<dyn Candidate>;
+type Constructor = fn() -> Candidate;
 
-const CANDIDATES: [(&str, Constructor); 2] = [
-    ("sbbk", |margin| Box::new(Sbbk::new(margin))),
-    ("parry", |margin| Box::new(Parry::new(margin))),
-];
+const CANDIDATES: [(&str, Constructor); 2] = [("sbbk", sbbk), ("parry", parry)];
 
 fn brute_force(frame: &[Bounds]) -> Vec<IndexPair> {
     let pairs_of = |i: usize| {
@@ -38,9 +35,9 @@ fn check() {
     for scene in SCENES {
         let frames = scene.frames(1000);
         for (name, construct) in CANDIDATES {
-            let mut candidate = construct(MARGIN);
+            let mut step = construct();
             for (f, frame) in frames.iter().enumerate() {
-                let mut pairs = candidate.step(frame);
+                let mut pairs = step(frame);
                 if f % 8 == 0 {
                     pairs.sort_unstable();
                     let is_equal = pairs == brute_force(frame);
@@ -59,9 +56,9 @@ fn broad_phase(criterion: &mut Criterion) {
             let mut group = criterion.benchmark_group(format!("{}/{count}", scene.name));
             group.sampling_mode(SamplingMode::Flat);
             for (name, construct) in CANDIDATES {
-                let mut candidate = construct(MARGIN);
+                let mut candidate = construct();
                 let mut next_frames = frames.iter().cycle();
-                let mut step = || black_box(candidate.step(next_frames.next().unwrap()).len());
+                let mut step = || black_box(candidate(next_frames.next().unwrap()).len());
                 // What the first frame costs is not the question here.
                 step();
                 group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
