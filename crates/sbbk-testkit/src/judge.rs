@@ -122,7 +122,7 @@ impl Truth {
         };
         let mut contacts = HashMap::new();
         for (part_index, (place, part)) in (0..).zip(parts) {
-            let (body, to_part) = (convex_body(part), affine(place).inverse() * to_shape);
+            let (body, to_part) = (convex_body(&**part), affine(place).inverse() * to_shape);
             for (index, corners) in near(mesh, part, &(pose * *place), prediction) {
                 let found = body.contact(&corners.map(|corner| to_part.transform_point3(corner)));
                 if found.distance <= reach {

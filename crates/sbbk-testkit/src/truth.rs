@@ -2,7 +2,7 @@
 
 use glamx::{DAffine3, DMat3, DPose3, DVec3, Pose3};
 use rapier3d::math::{Real, Vector};
-use rapier3d::parry::shape::{Shape, SharedShape, TypedShape};
+use rapier3d::parry::shape::{Shape, TypedShape};
 use sbbk_truth::ConvexBody;
 
 /// Converts a convex shape of Parry.
@@ -10,15 +10,11 @@ use sbbk_truth::ConvexBody;
 /// # Panics
 ///
 /// If the shape is not convex, or of a kind that Rapier does not have.
-pub fn convex_body(shape: &SharedShape) -> ConvexBody {
-    body(&**shape)
-}
-
-fn body(shape: &dyn Shape) -> ConvexBody {
+pub fn convex_body(shape: &dyn Shape) -> ConvexBody {
     let hull = |points: &[Vector]| {
         ConvexBody::hull(points.iter().map(|point| point.as_dvec3()).collect::<Vec<_>>())
     };
-    let round = |inner: &dyn Shape, radius: Real| body(inner).rounded(radius.into());
+    let round = |inner: &dyn Shape, radius: Real| convex_body(inner).rounded(radius.into());
     match shape.as_typed_shape() {
         TypedShape::Ball(ball) => ConvexBody::hull([DVec3::ZERO]).rounded(ball.radius.into()),
         TypedShape::Segment(segment) => hull(&[segment.a, segment.b]),

@@ -17,7 +17,7 @@ fn first_impacts_are_those_of_brute_force() {
         let mesh = shape(&mesh::monkey_head_with(6).centred().scaled_to(size));
         let tolerance = 4.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
-            let (body, around) = (convex_body(&other), other.compute_local_aabb());
+            let (body, around) = (convex_body(&*other), other.compute_local_aabb());
             let mut random = Rand32::new(seed);
             for i in 0..4 {
                 let way = direction(&mut random);

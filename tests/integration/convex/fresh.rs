@@ -109,7 +109,7 @@ fn exact_contacts_are_the_true_ones() {
         let head = shape(&mesh::monkey_head().scaled(scale));
         let size = share * scale;
         for (name, shape) in shapes(size) {
-            let body = convex_body(&shape);
+            let body = convex_body(&*shape);
             // Brute force over all triangles takes seconds for hulls.
             let (mut count, poses) = (0, if is_quick(name) { 40 } else { 27 });
             if share > 1.0 && !is_quick(name) {
@@ -143,7 +143,7 @@ fn a_huge_floor_loses_no_contact() {
     let mut count = 0;
     for half in [50.0, 2000.0] {
         let shape = SharedShape::cuboid(half, 0.25, half);
-        let body = convex_body(&shape);
+        let body = convex_body(&*shape);
         for i in 0..60 {
             let turn = if i % 4 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
             let [x, z] = [(); 2].map(|()| 1.8 * half * (random.rand_float() - 0.5));

@@ -80,7 +80,7 @@ fn first_impacts_are_those_of_brute_force() {
         let mesh = shape(&mesh::monkey_head_with(4).centred().scaled_to(size));
         let tolerance = 3.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
-            let body = convex_body(&other);
+            let body = convex_body(&*other);
             for i in 0..4 {
                 let random = &mut Rand32::new(100 * seed + i as u64);
                 let mut in_mesh = pose(random, &mesh, 0.3 * size);
@@ -285,7 +285,7 @@ fn bodies_that_glide_along_a_floor_meet_the_wall() {
                 let cast = Cast::past(&mesh, &other, moving);
                 let found = cast.ask(&dispatcher, true);
                 found.map(|hit| {
-                    (hit, cast.distance(&convex_body(&other), f64::from(hit.time_of_impact)))
+                    (hit, cast.distance(&convex_body(&*other), f64::from(hit.time_of_impact)))
                 })
             };
             let (hit, left) = cast(9.0 * Vec3::X).expect("meets the wall");

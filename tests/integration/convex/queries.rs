@@ -41,7 +41,7 @@ fn as_brute_force_says_at_every_size() {
         let mesh = shape(&mesh::monkey_head_with(6).centred().scaled_to(size));
         let tolerance = 2.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.5 * size)) {
-            let body = convex_body(&other);
+            let body = convex_body(&*other);
             let mut random = Rand32::new(seed);
             for i in 0..6 {
                 let mut in_mesh = pose(&mut random, &mesh, 0.5 * size);
