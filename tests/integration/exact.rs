@@ -140,16 +140,14 @@ fn the_nearest_edges_of_crossed_bars_have_a_contact() {
 /// seem to have passed each other, as normals of far contacts lead into both threads. They pushed nuts by a flank.
 #[test]
 fn solids_that_are_apart_have_no_nearer_contacts() {
-    let thread = Thread::BOLT;
-    let nut = Thread { root: 0.92, thicker: 0.05, turns: 2, ..thread };
-    let [bolt, nut] = [thread.bolt(), nut.nut(1.2)].map(|mesh| shape(&mesh));
+    let [bolt, nut] = [Thread::BOLT.bolt(), Thread::NUT.nut(1.2)].map(|mesh| shape(&mesh));
     let dispatcher = SbbkDispatcher::default();
     let mut random = Rand32::new(11);
     let mut found = 0;
     for i in 0..60 {
         let mut within = |most: Real| most * (2.0 * random.rand_float() - 1.0);
         let turn = within(3.0);
-        let height = thread.pitch * (2.0 + turn / TAU + within(0.03));
+        let height = Thread::BOLT.pitch * (2.0 + turn / TAU + within(0.03));
         let turn = Quat::from_rotation_y(turn) * Quat::from_rotation_x(within(0.003));
         let pose = Pose::from_parts(Vec3::new(within(0.005), height, within(0.005)), turn);
         let least = DefaultQueryDispatcher.distance(&pose, &bolt, &nut).unwrap().distance;

@@ -2,8 +2,7 @@ use super::*;
 use sbbk_testkit::mesh::Thread;
 
 const BOLT: Thread = Thread::BOLT;
-/// With a tenth of a pitch of play, and so much less deep.
-const NUT: Thread = Thread { root: 0.92, thicker: 0.05, turns: 2, ..BOLT };
+const NUT: Thread = Thread::NUT;
 const NUT_RADIUS: f32 = 1.2;
 /// Mean radius of where the threads meet.
 const RADIUS: f32 = 0.96;

@@ -176,6 +176,9 @@ impl Thread {
         segments: 48,
     };
 
+    /// For a nut on [`Self::BOLT`], with a tenth of a pitch of play, and so much less deep.
+    pub const NUT: Self = Self { root: 0.92, thicker: 0.05, turns: 2, ..Self::BOLT };
+
     /// Where the corners of the profile are in each turn, as a share of the pitch, and how much of
     /// the height they stand out. Slopes are steep, so that facets of bolt and nut hardly make the
     /// nut go up and down.

@@ -21,8 +21,7 @@ pub(super) fn screws() -> Vec<Trial> {
 /// Runs the nut. Contact clustering is off, as it merges normals within five degrees.
 fn screw(kit: &Kit, friction: f32) -> Figures {
     const BOLT: Thread = Thread::BOLT;
-    /// With a tenth of a pitch of play, and so much less deep.
-    const NUT: Thread = Thread { root: 0.92, thicker: 0.05, turns: 2, ..BOLT };
+    const NUT: Thread = Thread::NUT;
     let mut world = kit.world();
     world.integration_parameters.contact_clustering = false;
     world.fix(Vec3::ZERO, kit.mesh(&BOLT.bolt()).friction(friction));
