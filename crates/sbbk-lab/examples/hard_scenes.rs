@@ -17,7 +17,7 @@ use clap::{Args, Parser, ValueEnum};
 use sbbk_lab::cli::{Outcome, StudyArguments, print_page};
 use sbbk_lab::mesh_file;
 use sbbk_lab::report::check_output;
-use sbbk_lab::study::hard::random::{Family, RandomPlan, random as run_random};
+use sbbk_lab::study::hard::random::{Family, Options, RandomPlan, random as run_random};
 use sbbk_lab::study::hard::{Column, Group, HardPlan, Settings, hard};
 
 /// Runs difficult scenes of meshes to their end, and judges them
@@ -49,18 +49,8 @@ struct RandomArguments {
     /// Runs one random scene, the one with this number
     #[arg(long)]
     number: Option<u32>,
-    /// Seed of the random scenes
-    #[arg(long, default_value = "1")]
-    seed: u64,
-    /// Rapier's length unit in random scenes; the size of the bodies if not given
-    #[arg(long)]
-    unit: Option<f32>,
-    /// Iterations of Rapier's solver in random scenes; its default if not given
-    #[arg(long)]
-    iterations: Option<usize>,
-    /// Keeps Rapier from sweeping fast convex bodies in random scenes
-    #[arg(long)]
-    no_sweeps: bool,
+    #[command(flatten)]
+    options: Options,
 }
 
 impl RandomArguments {
@@ -72,10 +62,9 @@ impl RandomArguments {
     fn plan(self, study: &StudyArguments, settings: Settings) -> RandomPlan {
         let count = self.random.flatten().unwrap_or_else(|| study.plan(|| 200, || 2));
         let numbers = self.number.map_or(0..count, |number| number..number + 1);
-        let plan = RandomPlan::new(numbers, self.seed, settings);
-        let families = if self.family.is_empty() { plan.families } else { self.family };
-        let Self { unit, iterations, no_sweeps, .. } = self;
-        RandomPlan { families, unit, iterations, sweeps: !no_sweeps, ..plan }
+        let all = || Family::value_variants().to_vec();
+        let families = if self.family.is_empty() { all() } else { self.family };
+        RandomPlan { families, numbers, options: self.options, settings }
     }
 }
 

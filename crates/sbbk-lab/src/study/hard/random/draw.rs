@@ -2,7 +2,7 @@
 
 use rapier3d::parry::mass_properties::MassProperties;
 
-use super::Family;
+use super::{Family, Options};
 use crate::study::hard::heaps::open_box;
 use crate::study::hard::kit::*;
 use crate::study::hard::resting::ring;
@@ -19,12 +19,7 @@ pub(super) struct Draw {
     random: Rand32,
     /// Length of a body, in metres.
     pub size: f32,
-    /// Rapier's length unit, in metres.
-    pub unit: f32,
-    /// Iterations of Rapier's solver; `None` for its default.
-    pub iterations: Option<usize>,
-    /// True if Rapier sweeps fast convex bodies, as by default.
-    pub sweeps: bool,
+    pub options: Options,
     /// Gravity, in sizes/s².
     pub gravity: f32,
     /// Time step, in seconds.
@@ -65,8 +60,9 @@ impl Part {
 }
 
 impl Draw {
-    pub fn new(family: Family, seed: u64, number: u32) -> Self {
-        let mixed = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(number).rotate_left(32);
+    pub fn new(family: Family, options: Options, number: u32) -> Self {
+        let mixed = options.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mixed = mixed ^ u64::from(number).rotate_left(32);
         let mut random = Rand32::new(mixed ^ ((family as u64) << 56));
         let mut log = |low: f32, high: f32| low * (high / low).powf(random.rand_float());
         let (size, gravity) = (log(0.01, 100.0), log(2.0, 30.0));
@@ -75,21 +71,8 @@ impl Draw {
         let dt = log(fine.max(1.0 / 240.0), coarse.min(1.0 / 30.0));
         let is_reversed = random.rand_range(0..2) == 1;
         let about = vec![format!("size {size:.2}, {gravity:.1}/s², {:.0} Hz", 1.0 / dt)];
-        let (unit, iterations, sweeps) = (size, None, true);
         let (is_sunk, has_control) = (false, true);
-        Self {
-            random,
-            size,
-            unit,
-            iterations,
-            sweeps,
-            gravity,
-            dt,
-            is_reversed,
-            is_sunk,
-            has_control,
-            about,
-        }
+        Self { random, size, options, gravity, dt, is_reversed, is_sunk, has_control, about }
     }
 
     pub fn within(&mut self, low: f32, high: f32) -> f32 {

@@ -11,6 +11,8 @@ mod stage;
 
 use std::ops::Range;
 
+use clap::Args;
+
 use super::figures::{self, Figures, Run};
 use super::kit::{Column, Kit};
 use super::{Settings, Trial, run_all};
@@ -63,35 +65,38 @@ impl Family {
     }
 }
 
+/// What all scenes of a study have. Chains keep their own iterations.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Options {
+    /// Seed of the random scenes
+    #[arg(long, default_value = "1")]
+    pub seed: u64,
+    /// Rapier's length unit in random scenes; the size of the bodies if not given
+    #[arg(long)]
+    pub unit: Option<f32>,
+    /// Iterations of Rapier's solver in random scenes; its default if not given
+    #[arg(long)]
+    pub iterations: Option<usize>,
+    /// Keeps Rapier from sweeping fast convex bodies in random scenes
+    #[arg(long)]
+    pub no_sweeps: bool,
+}
+
 /// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct RandomPlan {
     pub families: Vec<Family>,
     /// Numbers of the scenes of each family.
     pub numbers: Range<u32>,
-    pub seed: u64,
-    /// Rapier's length unit; `None` for the size of the bodies.
-    pub unit: Option<f32>,
-    /// Iterations of Rapier's solver; `None` for its default. Chains keep theirs.
-    pub iterations: Option<usize>,
-    /// False if Rapier does not sweep fast convex bodies.
-    pub sweeps: bool,
+    pub options: Options,
     pub settings: Settings,
 }
 
 impl RandomPlan {
-    /// Scenes of all families.
-    pub fn new(numbers: Range<u32>, seed: u64, settings: Settings) -> Self {
-        let families = Family::value_variants().to_vec();
-        Self { families, numbers, seed, unit: None, iterations: None, sweeps: true, settings }
-    }
-
     fn trial(&self, family: Family, number: u32) -> Trial {
-        let Self { seed, unit, iterations, sweeps, .. } = *self;
+        let options = self.options;
         let run = move |kit: &Kit| {
-            let mut draw = Draw::new(family, seed, number);
-            draw.unit = unit.unwrap_or(draw.size);
-            (draw.iterations, draw.sweeps) = (iterations, sweeps);
+            let mut draw = Draw::new(family, options, number);
             let figures = family.run(&mut draw, kit);
             // Some parts have no convex shape.
             let is_run = kit.column != Column::Control || draw.has_control;
@@ -122,10 +127,10 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> io::Result<Results> {
     let rows: Vec<Row> = rows.chain(broken).collect();
     let mut notes = figures::notes(&plan.settings, &runs);
     if !notes.is_empty() {
-        let seed = plan.seed;
-        let unit = plan.unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
-        let iterations = plan.iterations.map(|count| format!(" --iterations {count}"));
-        let sweeps = if plan.sweeps { "" } else { " --no-sweeps" };
+        let Options { seed, unit, iterations, no_sweeps } = plan.options;
+        let unit = unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
+        let iterations = iterations.map(|count| format!(" --iterations {count}"));
+        let sweeps = if no_sweeps { " --no-sweeps" } else { "" };
         let set = unit + &iterations.unwrap_or_default() + sweeps;
         notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{set} --verbose"));
     }

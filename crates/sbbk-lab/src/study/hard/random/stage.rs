@@ -2,6 +2,7 @@
 
 use rapier3d::parry::mass_properties::MassProperties;
 
+use super::Options;
 use super::draw::{Draw, Part};
 use crate::study::hard::kit::*;
 
@@ -67,10 +68,10 @@ impl<'a> Stage<'a> {
         let mut world = kit.world();
         world.gravity = -size * draw.gravity * Vec3::Y;
         let parameters = &mut world.integration_parameters;
-        (parameters.length_unit, parameters.dt) = (draw.unit, draw.dt);
-        parameters.num_solver_iterations =
-            draw.iterations.unwrap_or(parameters.num_solver_iterations);
-        parameters.max_ccd_substeps *= usize::from(draw.sweeps);
+        let Options { unit, iterations, no_sweeps, .. } = draw.options;
+        (parameters.length_unit, parameters.dt) = (unit.unwrap_or(size), draw.dt);
+        parameters.num_solver_iterations = iterations.unwrap_or(parameters.num_solver_iterations);
+        parameters.max_ccd_substeps *= usize::from(!no_sweeps);
         let mut insert = |body: &Body| insert(&mut world, kit, body, size);
         let mut handles: Vec<_> = match draw.is_reversed {
             false => bodies.iter().map(insert).collect(),
