@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 fn soft_ball() -> TriMesh {
-    shape_with(&mesh::ball(1.0, 5), TriMeshFlags::DEFORMABLE)
+    mesh::ball(1.0, 5).trimesh(TriMeshFlags::DEFORMABLE)
 }
 
 /// Would catch one mesh taken for the other.

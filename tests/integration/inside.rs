@@ -60,7 +60,7 @@ fn bodies_in_no_solid_are_not_pushed_out() {
     let inverted = shape(&turned_inside_out(mesh::cuboid(HALF, 2)));
     let bowl = shape(&mesh::terrain(4.0, 10, 2.0));
     let large = shape(&mesh::cuboid(HALF, 40));
-    let soft = shape_with(&mesh::cuboid(HALF, 2), TriMeshFlags::DEFORMABLE);
+    let soft = mesh::cuboid(HALF, 2).trimesh(TriMeshFlags::DEFORMABLE);
     for mesh in [&hollow, &inverted, &bowl, &large, &soft] {
         let mut random = Rand32::new(30);
         for _ in 0..30 {

@@ -13,8 +13,7 @@ fn one_triangle(number: usize) -> TriMesh {
 fn idle_trees_take_what_is_counted() {
     let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
     let tiny: Vec<TriMesh> = (0..1000).map(one_triangle).collect();
-    let small: Vec<TriMesh> =
-        (1..50).map(|i| shape_with(&mesh::ball(i as f32, 3), flags)).collect();
+    let small: Vec<TriMesh> = (1..50).map(|i| mesh::ball(i as f32, 3).trimesh(flags)).collect();
     let large = vec![shape(&mesh::ball(1.0, 30))];
     for (name, meshes) in [("tiny", tiny), ("small", small), ("large", large)] {
         let dispatcher = SbbkDispatcher::default();

@@ -12,7 +12,7 @@ fn meshes() -> [Mesh; 2] {
 
 /// Panics if the flags renumber the mesh.
 fn flagged(mesh: &Mesh, flags: TriMeshFlags) -> TriMesh {
-    let (free, flagged) = (shape(mesh), shape_with(mesh, flags));
+    let (free, flagged) = (shape(mesh), mesh.trimesh(flags));
     assert_eq!((free.vertices(), free.indices()), (flagged.vertices(), flagged.indices()));
     flagged
 }

@@ -380,8 +380,8 @@ fn each_part_of_a_compound_keeps_its_data() {
 #[test]
 fn normals_of_any_length_make_patches() {
     let head = mesh::monkey_head();
-    let [bare, cones] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
-        .map(|flags| shape_with(&head, flags));
+    let [bare, cones] =
+        [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES].map(|flags| head.trimesh(flags));
     let dispatcher = with(|config| config.contact_set = ContactSet::Triangles);
     let turn = Quat::from_xyzw(0.6, 0.0, 0.0, 0.79999);
     for x in [0.5, 0.9, 1.1] {

@@ -121,9 +121,8 @@ fn meshes_that_may_deform_have_every_contact_of_their_triangles() {
 
 /// The shape; if it is a mesh, with other flags.
 fn flagged(shape: &SharedShape, flags: TriMeshFlags) -> SharedShape {
-    let Some(mesh) = shape.as_trimesh() else { return shape.clone() };
-    let (vertices, indices) = (mesh.vertices().to_vec(), mesh.indices().to_vec());
-    SharedShape::new(TriMesh::with_flags(vertices, indices, flags).expect("a mesh"))
+    let mesh = shape.as_trimesh().map(|mesh| SharedShape::new(rebuilt(mesh, flags)));
+    mesh.unwrap_or_else(|| shape.clone())
 }
 
 /// Would catch a panic, and contacts at poses that are not finite.

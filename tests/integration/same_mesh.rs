@@ -43,7 +43,7 @@ fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
 fn two_thousand_copies_share_one_tree() {
     let dispatcher = SbbkDispatcher::default();
     let mesh = ball();
-    let copy = |i| if i % 2 == 0 { mesh.clone() } else { rebuilt(&mesh) };
+    let copy = |i| if i % 2 == 0 { mesh.clone() } else { rebuilt(&mesh, mesh.flags()) };
     let copies: Vec<TriMesh> = (0..2000).map(copy).collect();
     let pairs: Vec<Pair> =
         copies.windows(2).map(|two| touch(&dispatcher.clone(), &two[0], &two[1])).collect();
@@ -61,7 +61,7 @@ fn another_scale_is_another_mesh_and_another_flag_is_none() {
     let dispatcher = SbbkDispatcher::default();
     let mesh = ball();
     let larger = mesh.clone().scaled(Vector::splat(1.25));
-    let fixed = shape_with(&mesh::ball(1.0, 6), TriMeshFlags::FIX_INTERNAL_EDGES);
+    let fixed = mesh::ball(1.0, 6).trimesh(TriMeshFlags::FIX_INTERNAL_EDGES);
     assert_eq!((mesh.vertices(), mesh.indices()), (fixed.vertices(), fixed.indices()));
     for (other, trees) in [(&larger, 2), (&fixed, 2)] {
         let pair = touch(&dispatcher, &mesh, other);
@@ -227,8 +227,8 @@ fn scaled_meshes_keep_their_own_normals() {
     let depths = [0.0, 0.05, 0.2].repeat(4);
     for flags in [TriMeshFlags::FIX_INTERNAL_EDGES, TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED] {
         for lab_mesh in [mesh::cuboid(Vector::new(2.0, 0.3, 2.0), 2), mesh::terrain(6.0, 8, 1.0)] {
-            let scaled = shape_with(&lab_mesh, flags).scaled(Vector::new(1.0, 0.2, 1.0));
-            let built = rebuilt(&scaled);
+            let scaled = lab_mesh.trimesh(flags).scaled(Vector::new(1.0, 0.2, 1.0));
+            let built = rebuilt(&scaled, flags);
             assert_eq!(leaves(&scaled), leaves(&built), "nothing but the normals differs");
             let unlike = check_shared([&scaled, &built], &other, &depths);
             assert!(unlike > 3, "only {unlike} of 24 tell the meshes apart");

@@ -249,16 +249,12 @@ pub fn cone(count: u32) -> Mesh {
 
 /// Parry's mesh of a mesh of the laboratory.
 pub fn shape(mesh: &Mesh) -> TriMesh {
-    shape_with(mesh, TriMeshFlags::empty())
+    mesh.trimesh(TriMeshFlags::empty())
 }
 
-pub fn shape_with(mesh: &Mesh, flags: TriMeshFlags) -> TriMesh {
-    mesh.trimesh(flags).expect("the meshes of these tests are valid")
-}
-
-/// A mesh with equal content in other memory.
-pub fn rebuilt(mesh: &TriMesh) -> TriMesh {
-    TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), mesh.flags()).unwrap()
+/// A mesh of equal triangles in other memory, built with these flags.
+pub fn rebuilt(mesh: &TriMesh, flags: TriMeshFlags) -> TriMesh {
+    TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), flags).unwrap()
 }
 
 /// Dents that wander over a mesh, from where its vertices are at rest.

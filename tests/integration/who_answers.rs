@@ -19,7 +19,7 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     let ball = mesh::ball(0.7, 3);
     let field = SharedShape::new(rolling(4.0, 4, 0.1));
     let part = |shape: SharedShape| vec![(Pose::translation(0.1, 0.0, 0.0), shape)];
-    let soft = shape_with(&ball, TriMeshFlags::DEFORMABLE);
+    let soft = ball.trimesh(TriMeshFlags::DEFORMABLE);
     // The whole pair is stock's, not half of it.
     let with_field = [part(field.clone()), part(SharedShape::ball(0.5))].concat();
     let line = vec![-Vec3::X, Vec3::X, Vec3::Y];
@@ -44,7 +44,7 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
 fn contacts_of_each_kind_are_computed_as_documented() {
     let pos12 = Pose::translation(0.15, 0.6, 0.1);
     for flags in [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE] {
-        let mesh = shape_with(&mesh::ball(0.8, 4), flags);
+        let mesh = mesh::ball(0.8, 4).trimesh(flags);
         for (name, other, who) in kinds() {
             for flipped in [false, true] {
                 let question = Question::new(&mesh, &*other, pos12).flipped(flipped);
@@ -88,7 +88,7 @@ fn queries_of_each_kind_are_computed_as_documented() {
         }),
     ];
     let rigid = shape(&mesh::ball(0.8, 4));
-    let soft = shape_with(&mesh::ball(0.8, 4), TriMeshFlags::DEFORMABLE);
+    let soft = mesh::ball(0.8, 4).trimesh(TriMeshFlags::DEFORMABLE);
     for (query, ask) in queries {
         for (name, other, _) in kinds() {
             for mesh in [&rigid, &soft] {

@@ -167,8 +167,8 @@ fn a_huge_floor_loses_no_contact() {
 #[test]
 fn constrained_normals_make_no_deep_points() {
     let bumps = mesh::terrain(4.0, 12, 0.7);
-    let [free, fixed] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
-        .map(|flags| shape_with(&bumps, flags));
+    let [free, fixed] =
+        [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES].map(|flags| bumps.trimesh(flags));
     let dispatcher = per_triangle();
     let shape = SharedShape::cuboid(0.4, 0.3, 0.2);
     let (mut random, mut seen) = (Rand32::new(8), 0);

@@ -141,7 +141,7 @@ fn flags_of_a_rigid_mesh_change_no_contact() {
     ];
     // 512 triangles each.
     let grounds = [mesh::terrain(4.0, 16, 0.5), mesh::ball(2.0, 8)].map(|ground| {
-        let flagged = flags.map(|flags| (flags, shape_with(&ground, flags)));
+        let flagged = flags.map(|flags| (flags, ground.trimesh(flags)));
         (shape(&ground), flagged)
     });
     let (mut random, mut count) = (Rand32::new(3), 0);

@@ -73,7 +73,7 @@ fn sheets_that_cross_along_grid_lines_have_contacts() {
     ];
     let mut cases = Vec::new();
     for (flags, (name, floor)) in with_flags(&floors) {
-        let [floor, sheet] = [floor, &triangle()].map(|mesh| shape_with(mesh, flags));
+        let [floor, sheet] = [floor, &triangle()].map(|mesh| mesh.trimesh(flags));
         for (column, pose) in poses {
             let [lost, crossing] = lost(&floor, &sheet, pose);
             assert!(crossing > POSES / 4, "{crossing} of {name}, {column} cross");

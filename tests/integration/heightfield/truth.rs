@@ -57,7 +57,7 @@ fn lattice_contacts_are_those_of_brute_force() {
 fn contacts_equal_those_of_the_terrain_as_a_mesh() {
     let dispatcher = per_triangle();
     let mut random = Rand32::new(4);
-    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::FIX_INTERNAL_EDGES);
+    let head = mesh::monkey_head().trimesh(TriMeshFlags::FIX_INTERNAL_EDGES);
     let mut count = 0;
     for terrain in &terrains() {
         for i in 0..20 {
@@ -172,7 +172,7 @@ fn internal_edges_of_the_field_are_fixed() {
     let dispatcher = per_triangle();
     let mut random = Rand32::new(6);
     let mut terrain = Terrain::random(&mut random, [14, 17], Vec3::new(6.0, 0.6, 4.0));
-    let mesh = shape_with(&mesh::monkey_head_with(6), TriMeshFlags::FIX_INTERNAL_EDGES);
+    let mesh = mesh::monkey_head_with(6).trimesh(TriMeshFlags::FIX_INTERNAL_EDGES);
     let (mut count, mut changed_count) = (0, 0);
     for i in 0..40 {
         let pose = place(&mut random, &terrain, &mesh, 0.05);

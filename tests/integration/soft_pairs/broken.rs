@@ -41,7 +41,7 @@ struct Meeting {
 impl Meeting {
     fn new(random: &mut Rand32, is_flipped: bool) -> Self {
         let flags = [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE];
-        let mesh = shape_with(&mesh::ball(0.7, 4), flags[random.rand_range(0..2) as usize]);
+        let mesh = mesh::ball(0.7, 4).trimesh(flags[random.rand_range(0..2) as usize]);
         let [x, y, z] = [0.5, 1.2, 0.5].map(|size| size * random.rand_float());
         let pose = Pose::from_parts(Vec3::new(x, y, z), rotation(random));
         Self { rest: mesh.vertices().to_vec(), mesh, pose, is_flipped }

@@ -78,7 +78,7 @@ impl Walk {
         let solids = [mesh::ball(0.6, 4), mesh::torus(0.5, 0.2, 10, 6), mesh::monkey_head_with(5)];
         let solid = solids[random.rand_range(0..3) as usize].clone();
         let solid = solid.centred().scaled_to(1.2);
-        let mesh = shape_with(&solid, history.flags | TriMeshFlags::DEFORMABLE);
+        let mesh = solid.trimesh(history.flags | TriMeshFlags::DEFORMABLE);
         let turn = if history.is_lattice { Quat::IDENTITY } else { rotation(&mut random) };
         let rest = mesh.vertices().to_vec();
         Self { random, mesh, rest, pose: Pose::from_parts(Vec3::Y * 0.5, turn) }

@@ -12,9 +12,7 @@ mod worlds;
 /// The answer for a rigid mesh built anew.
 pub fn anew(question: &Question) -> Vec<Manifold> {
     let mesh = question.mesh();
-    let flags = mesh.flags() - TriMeshFlags::DEFORMABLE;
-    let vertices = mesh.vertices().to_vec();
-    let rigid = TriMesh::with_flags(vertices, mesh.indices().to_vec(), flags).unwrap();
+    let rigid = rebuilt(mesh, mesh.flags() - TriMeshFlags::DEFORMABLE);
     Question { shapes: [question.shapes[0], &rigid], ..*question }.fresh(&per_triangle())
 }
 

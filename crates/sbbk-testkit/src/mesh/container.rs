@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glamx::{Pose3, Vec3};
 use rapier3d::parry::bounding_volume::Aabb;
-use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshBuilderError, TriMeshFlags};
+use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 
 /// A named indexed triangle mesh in its own frame.
 ///
@@ -119,9 +119,12 @@ impl Mesh {
 
     /// Builds Parry's shape as stock Rapier builds it.
     ///
-    /// Errors: the mesh has no triangles, or `flags` ask for a topology that the mesh does not have.
-    pub fn trimesh(&self, flags: TriMeshFlags) -> Result<TriMesh, TriMeshBuilderError> {
-        TriMesh::with_flags(self.vertices.clone(), self.triangles.clone(), flags)
+    /// # Panics
+    ///
+    /// If the mesh has no triangles, or if `flags` ask for a topology that the mesh does not have.
+    pub fn trimesh(&self, flags: TriMeshFlags) -> TriMesh {
+        let mesh = TriMesh::with_flags(self.vertices.clone(), self.triangles.clone(), flags);
+        mesh.unwrap_or_else(|cause| panic!("the mesh `{}`: {cause}", self.name))
     }
 
     /// Builds the shape that a plain `ColliderBuilder::trimesh` holds.
@@ -135,7 +138,6 @@ impl Mesh {
 
     /// Like [`Self::shape`], with flags.
     pub fn shape_with(&self, flags: TriMeshFlags) -> SharedShape {
-        let mesh = self.trimesh(flags);
-        SharedShape::new(mesh.unwrap_or_else(|cause| panic!("the mesh `{}`: {cause}", self.name)))
+        SharedShape::new(self.trimesh(flags))
     }
 }

@@ -94,7 +94,7 @@ fn monkey_head_is_symmetric_concave_and_the_same_to_the_bit() {
     let mirrored = |v: &Vec3| bits(v.with_x(-v.x));
     assert!(head.vertices.iter().all(|v| points.contains(&mirrored(v))));
 
-    let shape = head.trimesh(TriMeshFlags::empty()).unwrap();
+    let shape = head.trimesh(TriMeshFlags::empty());
     let surface = |y: f32| {
         let ray = Ray::new(Vec3::new(0.22, y, 2.0), Vec3::NEG_Z);
         shape.cast_local_ray(&ray, 2.0, true).map(|distance| 2.0 - distance)
@@ -122,7 +122,7 @@ fn helicopter_stands_on_its_skids() {
     let bounds = helicopter.bounds();
     assert!(bounds.mins.y.abs() < 1.0e-6 && (bounds.maxs.x - 2.4).abs() < 1.0e-5, "{bounds:?}");
     let flags = TriMeshFlags::CONNECTED_COMPONENTS | TriMeshFlags::HALF_EDGE_TOPOLOGY;
-    let shape = helicopter.trimesh(flags).unwrap();
+    let shape = helicopter.trimesh(flags);
     // Cabin, housing, mast; boom, fin, stabiliser, axle, two blades; two skids and four struts;
     // hub and four blades.
     assert_eq!(shape.connected_components().unwrap().num_connected_components(), 20);
