@@ -61,8 +61,7 @@ fn contacts_are_those_of_each_part_by_itself() {
                 let question =
                     Question::new(&head, &compound, pose).within(prediction).flipped(flipped);
                 let named = |m: &Manifold, part: Option<u32>| {
-                    let (one, two) = (m.subshape1, m.subshape2);
-                    let (triangle, other) = if flipped { (two, one) } else { (one, two) };
+                    let [triangle, other] = question.subshapes(m);
                     ([triangle, part.unwrap_or(other)], distance(m))
                 };
                 let found = fresh(&question, &dispatcher);

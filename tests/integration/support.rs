@@ -75,7 +75,8 @@ impl<'a> Question<'a> {
         std::mem::take(&mut Pair::default().ask(dispatcher, self).manifolds)
     }
 
-    fn host_order<T>(&self, [one, two]: [T; 2]) -> [T; 2] {
+    /// Puts what belongs to the shapes into the order of the host, or back.
+    pub fn host_order<T>(&self, [one, two]: [T; 2]) -> [T; 2] {
         if self.is_flipped { [two, one] } else { [one, two] }
     }
 }

@@ -148,12 +148,10 @@ fn queries_without_trees_are_those_with_trees() {
     for i in 0..120 {
         let from = rotation(&mut random) * Vec3::X;
         let pose = Pose3::from_parts(from * (0.3 + 0.03 * i as Real), rotation(&mut random));
-        for is_swapped in [false, true] {
-            let shapes: [&dyn Shape; 2] =
-                if is_swapped { [&*head, &*ring] } else { [&*ring, &*head] };
-            let pos12 = if is_swapped { pose.inverse() } else { pose };
+        for is_flipped in [false, true] {
+            let question = Question::new(&*ring, &*head, pose).flipped(is_flipped);
+            let ([g1, g2], pos12) = (question.host_shapes(), question.pos12());
             let ask = |d: &SbbkDispatcher| {
-                let [g1, g2] = shapes;
                 let closest = match d.closest_points(&pos12, g1, g2, 0.5).unwrap() {
                     ClosestPoints::Intersecting => -1.0,
                     ClosestPoints::WithinMargin(p1, p2) => (p1 - pos12 * p2).length(),

@@ -25,9 +25,7 @@ fn a_floor_of_triangles_is_flat() {
             }
             let question = Question::new(&floor, &*shape, pose).flipped(i % 2 == 0);
             let up = |manifold: &Manifold| {
-                let normal =
-                    if question.is_flipped { manifold.local_n2 } else { manifold.local_n1 };
-                normal.y
+                question.host_order([manifold.local_n1, manifold.local_n2])[0].y
             };
             let is_up = |manifold: &Manifold| up(manifold) > 0.999_996;
             let found = question.fresh(&surfaces);

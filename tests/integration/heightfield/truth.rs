@@ -176,34 +176,27 @@ fn internal_edges_of_the_field_are_fixed() {
     let (mut count, mut changed_count) = (0, 0);
     for i in 0..40 {
         let pose = place(&mut random, &terrain, &mesh, 0.05);
-        let ask = |terrain: &Terrain| {
-            let question = Question::new(&terrain.field, &mesh, pose);
-            question.flipped(i % 2 == 1).fresh(&dispatcher)
-        };
         terrain.field.set_flags(HeightFieldFlags::empty());
-        let free = ask(&terrain);
+        let question = Question::new(&terrain.field, &mesh, pose).flipped(i % 2 == 1);
+        let free = question.fresh(&dispatcher);
         terrain.field.set_flags(HeightFieldFlags::FIX_INTERNAL_EDGES);
-        let constrained = ask(&terrain);
+        let question = Question::new(&terrain.field, &mesh, pose).flipped(i % 2 == 1);
+        let constrained = question.fresh(&dispatcher);
         changed_count += usize::from(format!("{free:?}") != format!("{constrained:?}"));
         for manifold in &constrained {
-            let [one, two] = [manifold.subshape1, manifold.subshape2];
-            let [in_mesh, in_field] = if i % 2 == 1 { [one, two] } else { [two, one] };
-            let field = terrain.field.triangle_at_id(in_field).unwrap();
+            let [in_field, in_mesh] = question.subshapes(manifold);
+            let pair = [terrain.field.triangle_at_id(in_field).unwrap(), mesh.triangle(in_mesh)];
             let cones = [
-                mesh.triangle_normal_constraints(in_mesh),
                 terrain.field.triangle_normal_constraints(in_field),
+                mesh.triangle_normal_constraints(in_mesh),
             ];
-            let [of_mesh, of_field] =
+            let cones =
                 cones.each_ref().map(|cone| cone.as_ref().map(|c| c as &dyn NormalConstraints));
-            let triangle = mesh.triangle(in_mesh);
+            let (pair, cones) = (question.host_order(pair.each_ref()), question.host_order(cones));
             let mut expected = Manifold::new();
-            let (pos12, triangles, cones) = if i % 2 == 1 {
-                (pose.inverse(), [&triangle, &field], [of_mesh, of_field])
-            } else {
-                (pose, [&field, &triangle], [of_field, of_mesh])
-            };
-            TriangleContacts::default().update(&pos12, triangles, cones, 0.02, &mut expected);
-            [expected.subshape1, expected.subshape2] = [one, two];
+            let pos12 = question.pos12();
+            TriangleContacts::default().update(&pos12, pair, cones, 0.02, &mut expected);
+            [expected.subshape1, expected.subshape2] = triangles(manifold);
             assert_same(std::slice::from_ref(manifold), &[expected], 0.0);
             count += 1;
         }
