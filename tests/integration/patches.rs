@@ -2,8 +2,8 @@
 
 use crate::heightfield::terrain::rolling;
 use crate::prelude::*;
-use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::{Cone, Cylinder, PackedFeatureId};
+use sbbk_testkit::scene::random::first_touch;
 
 /// Least cosine of the normals in one patch. A cone may remove the deepest contact; the others are
 /// near to its normal.
@@ -18,23 +18,8 @@ const OVER: Real = 0.1;
 /// Difference of depths, in prediction distances, up to which contacts are equally deep.
 const EQUALLY_DEEP: Real = 2.1e-5;
 
-fn detailed(detail: ContactDetail) -> SbbkDispatcher {
-    with(|config| config.detail = detail)
-}
-
-type Manifold = ContactManifold<u32, u32>;
-
-/// The manifolds for a host that keeps nothing of the pair.
-fn fresh(dispatcher: &SbbkDispatcher, question: &Question) -> Vec<Manifold> {
-    std::mem::take(&mut Pair::default().ask(dispatcher, question).manifolds)
-}
-
 /// Points on both shapes in frame 1.
-fn place<C>(
-    pos12: &Pose,
-    manifold: &ContactManifold<u32, C>,
-    point: &TrackedContact<C>,
-) -> [Vector; 2] {
+fn place(pos12: &Pose, manifold: &Manifold, point: &TrackedContact<()>) -> [Vector; 2] {
     let own = |pose: Option<&Pose>, at: Vector| pose.map_or(at, |pose| *pose * at);
     let on2 = own(manifold.subshape_pos2(), point.local_p2);
     [own(manifold.subshape_pos1(), point.local_p1), *pos12 * on2]
@@ -63,7 +48,7 @@ fn assert_stand_for(
         assert!(every.iter().any(|m| is_that(&m)), "{what}: a patch of no contact");
         for point in &patch.points {
             let is_same = |m: &&Manifold| {
-                let is_there = |p: &TrackedContact<u32>| {
+                let is_there = |p: &TrackedContact<()>| {
                     p.dist == point.dist && place(pos12, m, p) == place(pos12, patch, point)
                 };
                 m.local_n1.dot(patch.local_n1) >= least - 1e-6 && m.points.iter().any(is_there)
@@ -126,7 +111,7 @@ fn partners() -> Vec<(&'static str, SharedShape)> {
 #[test]
 fn patches_stand_for_every_contact() {
     let head = shape(&mesh::monkey_head());
-    let [every, patches] = [ContactDetail::Every, ContactDetail::Patches].map(detailed);
+    let (every, patches) = (every(), SbbkDispatcher::default());
     let mut random = Rand32::new(5);
     for (name, partner) in partners() {
         let mut counts = [0; 2];
@@ -145,7 +130,7 @@ fn patches_stand_for_every_contact() {
                     let question = Question::new(&head, &*partner, at).within(prediction);
                     let question = question.flipped(is_swapped);
                     let what = format!("{name}, {prediction}, {is_swapped}, {i}");
-                    let [expected, found] = [&every, &patches].map(|d| fresh(d, &question));
+                    let [expected, found] = [&every, &patches].map(|d| question.fresh(d));
                     let count =
                         assert_stand_for(&found, &expected, &question.pos12(), prediction, &what);
                     counts = [counts[0] + count[0], counts[1] + count[1]];
@@ -179,25 +164,19 @@ fn small_bodies_have_few_points_beyond_what_touches() {
     let cube = shape(&mesh::cuboid(Vec3::splat(0.025), 3));
     let patches = SbbkDispatcher::default();
     let mut random = Rand32::new(3);
-    let (mut points, mut count) = (0, 0);
+    let mut points = 0;
     for is_flipped in [false, true].repeat(100) {
         let away = direction(&mut random);
         let turned = rotation(&mut random);
         let at = |shift: Real| Pose::from_parts(shift * away, turned);
-        let meets = |shift: Real| patches.intersection_test(&at(shift), &cube, &cube);
-        let [mut low, mut high] = [0.0, 0.1];
-        for _ in 0..30 {
-            let middle = 0.5 * (low + high);
-            let is_low = meets(middle).expect("meshes are supported").intersecting;
-            *(if is_low { &mut low } else { &mut high }) = middle;
-        }
-        let question = Question::new(&cube, &cube, at(low - DEPTH)).within(PREDICTION);
-        let found = fresh(&patches, &question.flipped(is_flipped));
+        let meets = |shift: Real| patches.intersection_test(&at(shift), &cube, &cube).unwrap();
+        let touch = first_touch(0.1, 0.0, |shift| meets(shift).intersecting).expect("cubes meet");
+        let question = Question::new(&cube, &cube, at(touch - DEPTH)).within(PREDICTION);
+        let found = question.flipped(is_flipped).fresh(&patches);
         assert!(found.iter().map(distance).any(|distance| distance <= 0.0));
         points += found.iter().map(|manifold| manifold.points.len()).sum::<usize>();
-        count += 1;
     }
-    let mean = points as f64 / f64::from(count);
+    let mean = points as f64 / 200.0;
     println!("{mean} points a pair");
     assert!(mean < 16.0, "{mean} points a pair");
 }
@@ -208,17 +187,17 @@ fn small_bodies_have_few_points_beyond_what_touches() {
 fn far_contacts_are_outside_of_solids() {
     const HALF: Real = 0.025;
     let cube = shape(&mesh::cuboid(Vec3::splat(HALF), 3));
-    let dispatcher = detailed(ContactDetail::Every);
+    let dispatcher = every();
     let mut random = Rand32::new(5);
     let is_within = |at: Vector| at.abs().max_element() < HALF - 1e-5;
     let mut count = 0;
     for _ in 0..100 {
         let pos12 = Pose::from_parts(0.02 * direction(&mut random), rotation(&mut random));
-        let found = fresh(&dispatcher, &Question::new(&cube, &cube, pos12).within(0.02));
+        let found = Question::new(&cube, &cube, pos12).within(0.02).fresh(&dispatcher);
         assert!(found.iter().map(distance).any(|distance| distance <= 0.0));
         for manifold in found.iter().filter(|manifold| distance(manifold) > 0.2 * HALF) {
             // Other points of a manifold may be beside the contact.
-            let is_contact = |point: &&TrackedContact<u32>| point.dist == distance(manifold);
+            let is_contact = |point: &&TrackedContact<()>| point.dist == distance(manifold);
             let contact = manifold.points.iter().find(is_contact).expect("a manifold has points");
             let [one, two] = place(&pos12, manifold, contact);
             let middle = 0.5 * (one + two);
@@ -235,11 +214,11 @@ fn a_patch_for_each_leg() {
     let table = shape(&table());
     let floor = shape(&mesh::floor(4.0, 20));
     let slab = SharedShape::cuboid(2.0, 0.5, 2.0);
-    let dispatcher = detailed(ContactDetail::Patches);
+    let dispatcher = SbbkDispatcher::default();
     for (other, height) in [(&floor as &dyn Shape, 0.0), (&*slab.0, 0.5)] {
         for turn in [0.0, 0.3] {
             let at = Pose3::from_parts(Vec3::Y * (height + 0.999), Quat::from_rotation_y(turn));
-            let found = fresh(&dispatcher, &Question::new(other, &table, at).within(0.002));
+            let found = Question::new(other, &table, at).within(0.002).fresh(&dispatcher);
             let mut legs: Vec<_> = (found.iter().flat_map(|m| &m.points))
                 .map(|point| (point.local_p2.z.atan2(point.local_p2.x) / TAU * 6.0).round() as i32)
                 .map(|sixth| sixth.rem_euclid(6))
@@ -262,7 +241,7 @@ fn heads_come_to_rest() {
         let at = Pose3::from_parts(Vec3::new(6.0 * i as Real - 30.0, 1.4, 0.0), turn);
         (RigidBodyBuilder::dynamic().pose(at), ColliderBuilder::new(head.clone()))
     });
-    let mut heads = SceneWorld::new(on_ground(floor, detailed(ContactDetail::Patches)), heads);
+    let mut heads = SceneWorld::new(on_ground(floor, SbbkDispatcher::default()), heads);
     heads.step(600);
     assert!(heads.awake() <= 2, "{} of 10 heads do not lie still", heads.awake());
 }
@@ -280,7 +259,7 @@ fn named(pair: &Pair<u32, u32>) -> Vec<(PackedFeatureId, PackedFeatureId, u32)> 
 #[test]
 fn patches_and_points_keep_their_data() {
     let floor = shape(&mesh::floor(4.0, 2));
-    let dispatcher = detailed(ContactDetail::Patches);
+    let dispatcher = SbbkDispatcher::default();
     for cube in [
         mesh::cuboid(Vec3::splat(0.5), 1).shape(),
         SharedShape::cuboid(0.5, 0.5, 0.5),
@@ -309,8 +288,9 @@ fn patches_and_points_keep_their_data() {
         pair.ask(&dispatcher, &on(Pose::translation(0.3, -0.4995, 0.2)));
         assert!(!pair.manifolds.is_empty());
         assert!(pair.manifolds.iter().all(|manifold| manifold.data == 0));
-        let other = fresh(&dispatcher, &at(0.0));
-        assert!(other.iter().flat_map(|m| &m.points).all(|point| point.data == 0));
+        let mut other = Pair::<u32, u32>::default();
+        other.ask(&dispatcher, &at(0.0));
+        assert!(named(&other).iter().all(|&(.., data)| data == 0));
     }
 }
 
@@ -321,23 +301,23 @@ fn each_patch_keeps_the_data_of_the_one_most_like_it() {
     let bent = |v: Vec3| v + Vec3::Y * 0.15 * v.x.abs();
     let groove = shape(&mesh::floor(4.0, 2).mapped(bent));
     let keel = shape(&mesh::cuboid(Vec3::splat(0.5), 2).mapped(bent));
-    let dispatcher = detailed(ContactDetail::Patches);
+    let dispatcher = SbbkDispatcher::default();
     let at = |z: Real| {
         Question::new(&groove, &keel, Pose::translation(0.0, 0.4995, 0.1 + z)).within(0.002)
     };
-    let mut pair = Pair::default();
+    let mut pair = Pair::<u32>::default();
     pair.ask(&dispatcher, &at(0.0));
-    let side = |manifold: &Manifold| if manifold.local_n1.x > 0.0 { 7 } else { 8 };
-    assert_eq!(pair.manifolds.iter().map(side).collect::<BTreeSet<_>>().len(), 2);
+    let side = |normal: Vector| if normal.x > 0.0 { 7 } else { 8 };
+    assert_eq!(pair.manifolds.iter().map(|m| side(m.local_n1)).collect::<BTreeSet<_>>().len(), 2);
     for step in 1..20 {
         for manifold in &mut pair.manifolds {
-            manifold.data = side(manifold);
+            manifold.data = side(manifold.local_n1);
         }
         // A host may move them.
         pair.manifolds.rotate_left(step % 2);
         pair.ask(&dispatcher, &at(1e-5 * step as Real));
         for manifold in &pair.manifolds {
-            assert_eq!(manifold.data, side(manifold), "{step}");
+            assert_eq!(manifold.data, side(manifold.local_n1), "{step}");
         }
     }
 }
@@ -350,7 +330,7 @@ fn each_part_of_a_compound_keeps_its_data() {
     let feet = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [2.0, 2.0]];
     let feet = feet.map(|[x, z]| (Pose::translation(x, 0.0, z), leg.clone()));
     let (table, floor) = (SharedShape::compound(feet.into()), shape(&mesh::floor(16.0, 16)));
-    let dispatcher = detailed(ContactDetail::Patches);
+    let dispatcher = SbbkDispatcher::default();
     let at = |x: Real| {
         Question::new(&*table, &floor, Pose::translation(-0.3 - x, -0.4995, 0.35)).within(0.002)
     };
@@ -386,7 +366,7 @@ fn normals_of_any_length_make_patches() {
     let turn = Quat::from_xyzw(0.6, 0.0, 0.0, 0.79999);
     for x in [0.5, 0.9, 1.1] {
         let pose = Pose::from_parts(x * Vec3::X, turn);
-        let found = fresh(&dispatcher, &Question::new(&bare, &cones, pose));
+        let found = Question::new(&bare, &cones, pose).fresh(&dispatcher);
         assert!(!found.is_empty() && found.iter().all(|manifold| !manifold.points.is_empty()));
     }
 }
@@ -418,7 +398,7 @@ fn patches_reach_as_far_around_a_body_as_all_contacts() {
         ("mesh of a cuboid", of(Cuboid::new(Vec3::splat(0.4)).to_trimesh())),
     ];
     let mut random = Rand32::new(11);
-    let [patches, every] = [ContactDetail::Patches, ContactDetail::Every].map(detailed);
+    let (patches, every) = (SbbkDispatcher::default(), every());
     for (name, body) in &bodies {
         let mut least: Real = 1.0;
         for i in 0..200 {
@@ -429,13 +409,13 @@ fn patches_reach_as_far_around_a_body_as_all_contacts() {
             let most = if i % 2 == 0 { 0.0 } else { 1e-4 };
             let tilt = Quat::from_scaled_axis(Vec3::new(within(most), 0.0, within(most)));
             let question = Question::new(&floor, &**body, Pose::from_parts(at, tilt * turn));
-            let [patches, every] = [&patches, &every].map(|detail| fresh(detail, &question));
+            let [patches, every] = [&patches, &every].map(|detail| question.fresh(detail));
             for i in 0..24 {
                 let (sin, cos) = (TAU * i as Real / 24.0).sin_cos();
                 let reach = |all: &[Manifold]| {
                     let points = all.iter().flat_map(|m| &m.points);
                     let along =
-                        |p: &TrackedContact<u32>| (p.local_p1 - at).dot(Vec3::new(cos, 0.0, sin));
+                        |p: &TrackedContact<()>| (p.local_p1 - at).dot(Vec3::new(cos, 0.0, sin));
                     points.map(along).fold(Real::NEG_INFINITY, Real::max)
                 };
                 least = least.min(reach(&patches) / reach(&every));
@@ -445,22 +425,34 @@ fn patches_reach_as_far_around_a_body_as_all_contacts() {
     }
 }
 
+/// Grounds with their tops at height 0.
+fn flat_grounds() -> [(&'static str, SharedShape); 5] {
+    let corners = [-1.0, 1.0].map(|x| [[x, 0.0, -9.0], [x, 0.0, 9.0], [9.0 * x, -2.0, 0.0]]);
+    let corners: Vec<_> = corners.into_iter().flatten().map(Vec3::from).collect();
+    let plate = (Pose::translation(0.0, -0.5, 0.0), SharedShape::cuboid(9.0, 0.5, 9.0));
+    [
+        ("cuboid", SharedShape::compound(vec![plate])),
+        ("half-space", SharedShape::halfspace(Vec3::Y)),
+        ("hull", SharedShape::convex_hull(&corners).unwrap()),
+        ("floor", mesh::floor(20.0, 10).shape()),
+        ("coarse floor", mesh::floor(20.0, 1).shape()),
+    ]
+}
+
+/// Returns the least height of a turned shape.
+fn lowest(shape: &SharedShape, turn: Quat) -> Real {
+    let Some(mesh) = shape.as_trimesh() else {
+        let down = turn.inverse() * Vec3::NEG_Y;
+        return (turn * shape.as_support_map().unwrap().local_support_point(down)).y;
+    };
+    let heights = mesh.vertices().iter().map(|&corner| (turn * corner).y);
+    heights.fold(Real::INFINITY, Real::min)
+}
+
 /// Small bodies over flat grounds, with predictions of up to twenty radii, as soft CCD has them. Would catch patches without
 /// the nearest contact: a body would pass through a floor.
 #[test]
 fn the_nearest_contact_is_kept_at_any_prediction() {
-    let corners = [-1.0, 1.0].map(|x| [[x, 0.0, -9.0], [x, 0.0, 9.0], [9.0 * x, -2.0, 0.0]]);
-    let wedge: Vec<_> = corners.into_iter().flatten().map(Vec3::from).collect();
-    let top = |shape: SharedShape, y: Real| {
-        SharedShape::compound(vec![(Pose::translation(0.0, -y, 0.0), shape)])
-    };
-    let grounds = [
-        ("cuboid", top(SharedShape::cuboid(9.0, 0.5, 9.0), 0.5)),
-        ("half-space", SharedShape::halfspace(Vec3::Y)),
-        ("hull", SharedShape::convex_hull(&wedge).unwrap()),
-        ("floor", mesh::floor(20.0, 10).shape()),
-        ("coarse floor", mesh::floor(20.0, 1).shape()),
-    ];
     let bodies = [
         ("coarse box", mesh::cuboid(Vec3::splat(0.4), 1).shape()),
         ("box", mesh::cuboid(Vec3::splat(0.4), 4).shape()),
@@ -471,37 +463,21 @@ fn the_nearest_contact_is_kept_at_any_prediction() {
         ("cone", SharedShape::cone(0.3, 0.4)),
         ("capsule", SharedShape::capsule_y(0.3, 0.2)),
     ];
-    let dispatcher = SbbkDispatcher::default();
-    let mut random = Rand32::new(17);
-    for ((on, ground), (name, body)) in
-        grounds.iter().flat_map(|ground| bodies.iter().map(move |body| (ground, body)))
-    {
-        if [ground, body].iter().all(|shape| shape.as_trimesh().is_none()) {
-            continue;
-        }
-        let radius = body.compute_local_bounding_sphere().radius;
-        for i in 0..60 {
-            let gap = radius * [0.0, 0.5, 1.0, 4.0, 16.0][i % 5];
-            let turn = rotation(&mut random);
-            let lowest = match body.as_trimesh() {
-                Some(mesh) => {
-                    let heights = mesh.vertices().iter().map(|&corner| (turn * corner).y);
-                    heights.fold(Real::INFINITY, Real::min)
-                }
-                None => {
-                    let map = body.as_support_map().unwrap();
-                    (turn * map.local_support_point(turn.inverse() * -Vec3::Y)).y
-                }
-            };
-            let at = Pose::from_parts(Vec3::new(0.03, gap - lowest, 0.02), turn);
-            let question = Question::new(&**ground, &**body, at).within(gap + 1.5 * radius);
-            for is_flipped in [false, true] {
-                let found = fresh(&dispatcher, &question.clone().flipped(is_flipped));
+    let (dispatcher, mut random) = (SbbkDispatcher::default(), Rand32::new(17));
+    for (on, ground) in flat_grounds() {
+        let is_mesh = |shape: &SharedShape| shape.as_trimesh().is_some();
+        for (name, body) in bodies.iter().filter(|(_, body)| is_mesh(body) || is_mesh(&ground)) {
+            let radius = body.compute_local_bounding_sphere().radius;
+            for i in 0..60 {
+                let gap = radius * [0.0, 0.5, 1.0, 4.0, 16.0][i % 5];
+                let turn = rotation(&mut random);
+                let at = Vec3::new(0.03, gap - lowest(body, turn), 0.02);
+                let question = Question::new(&*ground, &**body, Pose::from_parts(at, turn));
+                let question = question.within(gap + 1.5 * radius).flipped(i % 2 == 0);
+                let found = question.fresh(&dispatcher);
                 let nearest = found.iter().map(distance).fold(Real::INFINITY, Real::min);
-                assert!(
-                    (nearest - gap).abs() < 1e-3 * (radius + gap),
-                    "{name} on {on}, {i}, {is_flipped}: {nearest} instead of {gap}",
-                );
+                let is_right = (nearest - gap).abs() < 1e-3 * (radius + gap);
+                assert!(is_right, "{name} on {on}, {i}: {nearest} instead of {gap}");
             }
         }
     }
