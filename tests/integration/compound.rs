@@ -37,13 +37,6 @@ pub fn compounds(size: Real) -> Vec<(&'static str, Compound)> {
     ]
 }
 
-/// The answer to a host that keeps nothing: manifolds within the prediction distance.
-fn fresh(question: &Question, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
-    let mut manifolds = question.fresh(dispatcher);
-    manifolds.retain(|manifold| distance(manifold) <= question.prediction);
-    manifolds
-}
-
 /// Would catch parts that are left out, and poses or numbers of parts mixed up.
 #[test]
 fn contacts_are_those_of_each_part_by_itself() {
@@ -64,12 +57,12 @@ fn contacts_are_those_of_each_part_by_itself() {
                     let [triangle, other] = question.subshapes(m);
                     ([triangle, part.unwrap_or(other)], distance(m))
                 };
-                let found = fresh(&question, &dispatcher);
+                let found = question.fresh(&dispatcher);
                 let found: BTreeMap<_, _> = found.iter().map(|m| named(m, None)).collect();
                 let mut expected = BTreeMap::new();
                 for (index, (at, part)) in (0..).zip(compound.shapes()) {
                     let part = Question::new(&head, &**part, pose * *at).within(prediction);
-                    let near = fresh(&part.flipped(flipped), &dispatcher);
+                    let near = part.flipped(flipped).fresh(&dispatcher);
                     expected.extend(near.iter().map(|m| named(m, Some(index))));
                 }
                 // The pose of a part is rounded.
@@ -128,7 +121,7 @@ fn each_of_many_parts_is_where_it_is() {
     let pose = Pose::translation(-20.0, 0.45, -15.0);
     let question = Question::new(&floor, &compound, pose).within(0.2);
     let mut nearest = vec![Real::INFINITY; 130];
-    for manifold in fresh(&question, &every()) {
+    for manifold in question.fresh(&every()) {
         let nearest = &mut nearest[manifold.subshape2 as usize];
         *nearest = nearest.min(distance(&manifold));
     }

@@ -136,7 +136,7 @@ const FAMILIES: &[Family] = &[
 
 /// Seconds of a first query, and of one after a step along each axis.
 fn seconds(
-    dispatcher: &impl crate::support::Dispatcher<(), ()>,
+    dispatcher: &impl PersistentQueryDispatcher,
     (shape1, shape2, pose): &Case,
     is_flipped: bool,
     step: f32,

@@ -12,11 +12,6 @@ pub type Manifold = ContactManifold<(), ()>;
 /// Indices of a triangle of mesh 1 and one of mesh 2.
 pub type TrianglePair = [u32; 2];
 
-/// A dispatcher of either kind, stock or SBBK.
-pub trait Dispatcher<M, C>: PersistentQueryDispatcher<M, C> {}
-
-impl<M, C, D: PersistentQueryDispatcher<M, C>> Dispatcher<M, C> for D {}
-
 /// A question of a host: the contacts of two shapes.
 #[derive(Clone, Copy)]
 pub struct Question<'a> {
@@ -71,7 +66,7 @@ impl<'a> Question<'a> {
     }
 
     /// The manifolds for a host that keeps nothing of the pair.
-    pub fn fresh(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
+    pub fn fresh(&self, dispatcher: &impl PersistentQueryDispatcher) -> Vec<Manifold> {
         std::mem::take(&mut Pair::default().ask(dispatcher, self).manifolds)
     }
 
@@ -96,7 +91,11 @@ impl<M, C> Default for Pair<M, C> {
 
 impl<M, C> Pair<M, C> {
     /// Asks for the contacts, with what the pair has kept.
-    pub fn ask(&mut self, dispatcher: &impl Dispatcher<M, C>, question: &Question) -> &mut Self {
+    pub fn ask(
+        &mut self,
+        dispatcher: &impl PersistentQueryDispatcher<M, C>,
+        question: &Question,
+    ) -> &mut Self {
         let [g1, g2] = question.host_shapes();
         let Self { manifolds, workspace } = self;
         dispatcher
@@ -285,28 +284,21 @@ pub fn touching(random: &mut Rand32, meshes: [&TriMesh; 2], depth: Real) -> Pose
 /// Like [`touching`], for shapes that are apart at a distance of `farthest`.
 pub fn touching_shapes(
     random: &mut Rand32,
-    shapes: [&dyn Shape; 2],
+    [shape1, shape2]: [&dyn Shape; 2],
     farthest: Real,
     depth: Real,
 ) -> Pose {
-    let mut approach = || approach(shapes, rotation(random), direction(random), farthest, depth);
-    (0..100).find_map(|_| approach()).expect("most lines through the origin make the shapes meet")
-}
-
-/// Returns `None` if shape 2 passes through a hole of shape 1.
-fn approach(
-    shapes: [&dyn Shape; 2],
-    rotation: Quat,
-    from: Vec3,
-    farthest: Real,
-    depth: Real,
-) -> Option<Pose> {
-    let at = |distance: Real| Pose::from_parts(from * distance, rotation);
-    let meet = |distance: Real| {
-        let answer = DefaultQueryDispatcher.intersection_test(&at(distance), shapes[0], shapes[1]);
-        answer.unwrap().intersecting
+    let mut approach = || {
+        let (turn, from) = (rotation(random), direction(random));
+        let at = |distance: Real| Pose::from_parts(from * distance, turn);
+        let meet = |distance: Real| {
+            let answer = DefaultQueryDispatcher.intersection_test(&at(distance), shape1, shape2);
+            answer.unwrap().intersecting
+        };
+        // Shape 2 may pass through a hole of shape 1.
+        Some(at(first_touch(farthest, 1e-5 * farthest, meet)? - depth))
     };
-    Some(at(first_touch(farthest, 1e-5 * farthest, meet)? - depth))
+    (0..100).find_map(|_| approach()).expect("most lines through the origin make the shapes meet")
 }
 
 /// Radius of the ball about the origin that holds a mesh.
