@@ -1,11 +1,6 @@
 use crate::prelude::*;
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene};
 
-/// Runs a scene for some steps.
-fn step(scene: &mut SceneWorld, steps: usize) {
-    (0..steps).for_each(|_| scene.world.step());
-}
-
 /// Adds SBBK to a scene.
 fn with_sbbk(mut scene: SceneWorld) -> SceneWorld {
     scene.world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
@@ -43,10 +38,10 @@ fn a_stack_of_ten_boxes_stands_for_a_minute() {
         scene
     };
     let (mut stock, mut sbbk) = (awake(), with_sbbk(awake()));
-    step(&mut stock, 3600);
-    step(&mut sbbk, 600);
+    stock.step(3600);
+    sbbk.step(600);
     let early: Vec<Vector> = bodies(&sbbk).map(RigidBody::translation).collect();
-    step(&mut sbbk, 3000);
+    sbbk.step(3000);
     let pairs = bodies(&stock).zip(bodies(&sbbk)).zip(early);
     for (index, ((stock, sbbk), early)) in pairs.enumerate() {
         assert_at_same_place([stock, sbbk], 5e-4, 1e-3);
@@ -65,7 +60,7 @@ fn a_stack_of_ten_boxes_stands_for_a_minute() {
 fn a_head_that_nothing_holds_tips_over_and_rests() {
     let scene = HeadOnSlope { angle: 0.0 };
     let mut scenes = [scene.build(), with_sbbk(scene.build())];
-    scenes.iter_mut().for_each(|scene| step(scene, 1000));
+    scenes.iter_mut().for_each(|scene| scene.step(1000));
     let [stock, sbbk] = scenes.each_ref().map(|scene| bodies(scene).next().expect("one head"));
     let turned = |body: &RigidBody| 2.0 * body.rotation().xyz().length().asin();
     assert!(turned(stock) < 0.02 && turned(sbbk) > 0.9);
@@ -80,7 +75,7 @@ fn a_head_rests_on_a_slope_by_its_surface() {
     for degrees in [10.0, 14.0] {
         let scene = HeadOnSlope { angle: Real::to_radians(degrees) };
         let mut sbbk = with_sbbk(scene.build());
-        step(&mut sbbk, 1200);
+        sbbk.step(1200);
         bodies(&sbbk).for_each(|head| assert_eq!(speed(head), 0.0, "on {degrees} degrees"));
     }
 }

@@ -23,7 +23,7 @@ fn bodies_stay_in_rooms() {
         .flat_map(|cells| [false, true].map(|is_prepared| (cells, is_prepared)));
     for (flags, (cells, is_prepared)) in with_flags(settings) {
         let room = mesh::cuboid(Vec3::splat(ROOM), cells).shape_with(flags);
-        let (mut world, prepared) = prepared_world(&[&room], is_prepared);
+        let (mut world, _prepared) = prepared_world(&[&room], is_prepared);
         world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(room));
         let mut at = Vec3::new(-1.8, 0.1, 0.17);
         let (columns, shapes): (Vec<_>, Vec<_>) = bodies(flags).into_iter().unzip();
@@ -37,7 +37,6 @@ fn bodies_stay_in_rooms() {
             let is_right = (y - BODY + ROOM).abs() < 0.05;
             cases.push(Case::new(&name, flags, column, format!("{y:.2}"), is_right));
         }
-        drop(prepared);
     }
     judge("height of a body in a room with its floor at -3, after 4 s", &cases, &[]);
 }

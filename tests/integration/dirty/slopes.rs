@@ -48,7 +48,7 @@ fn rollers() -> Vec<Roller> {
 /// The path down a slope in 3 s.
 fn roll(roller: &Roller, ground: &SharedShape, body: &SharedShape, is_prepared: bool) -> f32 {
     let tilt = Quat::from_rotation_z(-ANGLE.to_radians());
-    let (mut world, prepared) = prepared_world(&[ground, body], is_prepared);
+    let (mut world, _prepared) = prepared_world(&[ground, body], is_prepared);
     let below = if ground.as_cuboid().is_some() { tilt * -Vec3::Y } else { Vec3::ZERO };
     let slope = RigidBodyBuilder::fixed().translation(below).rotation(tilt.to_scaled_axis());
     world.insert(slope, ColliderBuilder::new(ground.clone()).friction(FRICTION));
@@ -60,7 +60,6 @@ fn roll(roller: &Roller, ground: &SharedShape, body: &SharedShape, is_prepared: 
     let start_body = RigidBodyBuilder::dynamic().translation(start).rotation(turn.to_scaled_axis());
     let collider = ColliderBuilder::new(body.clone()).mass_properties(roller.mass);
     let end = after(STEPS, world, start_body.can_sleep(false), collider.friction(FRICTION));
-    drop(prepared);
     (end.translation() - start).dot(tilt * Vec3::X)
 }
 
@@ -105,13 +104,12 @@ fn ring() -> Mesh {
 /// Depth of the lowest vertex after 4 s, of a ring dropped on two triangles.
 fn drop_depth(ring: &Mesh, height: f32, seed: u64, is_prepared: bool) -> f32 {
     let [floor, body] = [&mesh::floor(20.0, 1), ring].map(|mesh| mesh.shape());
-    let (mut world, prepared) = prepared_world(&[&body], is_prepared);
+    let (mut world, _prepared) = prepared_world(&[&body], is_prepared);
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor));
     let turn = rotation(&mut Rand32::new(seed)) * Quat::from_rotation_x(FRAC_PI_2);
     let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.7, height + 0.5, 0.4));
     let start = start.rotation(turn.to_scaled_axis());
     let end = after(240, world, start, ColliderBuilder::new(body));
-    drop(prepared);
     -lowest(ring, end.position())
 }
 

@@ -52,13 +52,13 @@ fn closed_meshes_push_out_what_has_sunk_in() {
         for (column, body, height) in bodies() {
             let dispatcher = SbbkDispatcher::default();
             let mesh = solid.shape.as_trimesh().expect("a mesh");
-            let declared = column.starts_with("declared").then(|| declare_solid(&dispatcher, mesh));
+            let _declared =
+                column.starts_with("declared").then(|| declare_solid(&dispatcher, mesh));
             let world = on_ground(solid.clone(), dispatcher);
             let place = Vec3::new(0.23, height, 0.11);
             let turn = Quat::from_rotation_y(0.4).to_scaled_axis();
             let start = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
             let end = after(240, world, start, ColliderBuilder::new(body.shape_with(flags)));
-            drop(declared);
             let lowest = lowest(&body, end.position());
             let is_right = (low..high).contains(&lowest);
             cases.push(Case::new(name, flags, column, format!("{lowest:.2}"), is_right));
