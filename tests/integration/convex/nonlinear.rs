@@ -1,5 +1,5 @@
 use super::moving::{Cast, walled};
-use super::queries::truth_at;
+use super::queries::truth_of;
 use super::shapes::{lattice_pose, pose, shapes};
 use crate::prelude::*;
 use glamx::DVec3;
@@ -66,8 +66,9 @@ fn check_hit(cast: &Cast, hit: &ShapeCastHit, body: &ConvexBody, rounded: f64, s
     let [of_mesh, of_shape] = cast.swap([hit.subshape1, hit.subshape2]);
     assert_eq!(of_shape, 0, "{says}");
     let [mesh_place, shape_place] = cast.places(end);
-    let own = truth_at(cast.mesh, body, shape_place.inverse() * mesh_place);
-    assert!(own[of_mesh as usize].abs() <= rounded, "{says} {hit:?}");
+    let triangle = cast.mesh.triangle(of_mesh);
+    let own = truth_of(&triangle, body, shape_place.inverse() * mesh_place);
+    assert!(own.abs() <= rounded, "{says} {hit:?}");
 }
 
 /// Would catch a bound of the speed that is too low, a wrong order of transforms, triangles left

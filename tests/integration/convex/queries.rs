@@ -7,12 +7,7 @@ use rapier3d::parry::shape::Triangle;
 use sbbk_testkit::truth::{affine, convex_body};
 use sbbk_truth::ConvexBody;
 
-/// Signed distances with the mesh at a place in the frame of the body.
-pub(super) fn truth_at(mesh: &TriMesh, body: &ConvexBody, pose: DAffine3) -> Vec<f64> {
-    mesh.triangles().map(|triangle| truth_of(&triangle, body, pose)).collect()
-}
-
-/// Signed distance of one triangle.
+/// Signed distance of a triangle with the mesh at a place in the frame of the body.
 pub(super) fn truth_of(triangle: &Triangle, body: &ConvexBody, pose: DAffine3) -> f64 {
     let place = |corner: &Vec3| pose.transform_point3(corner.as_dvec3());
     body.distance(&triangle.vertices().each_ref().map(place))
@@ -49,7 +44,10 @@ fn as_brute_force_says_at_every_size() {
                 let is_mesh_first = i % 2 == 0;
                 let question = Question::new(&mesh, &*other, in_mesh).flipped(!is_mesh_first);
                 let ([g1, g2], pos12) = (question.host_shapes(), question.pos12());
-                let distances = truth_at(&mesh, &body, affine(&in_mesh).inverse());
+                let in_body = affine(&in_mesh).inverse();
+                let triangles = mesh.triangles();
+                let distances: Vec<f64> =
+                    triangles.map(|triangle| truth_of(&triangle, &body, in_body)).collect();
                 let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
                 let of_mesh = |[one, two]: [u32; 2]| {
                     let [triangle, part] = if is_mesh_first { [one, two] } else { [two, one] };

@@ -31,11 +31,6 @@ pub fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
     ]
 }
 
-/// A large flat floor. Its box holds the whole mesh if it is turned.
-pub fn floor() -> SharedShape {
-    SharedShape::cuboid(50.0, 0.25, 50.0)
-}
-
 pub(super) const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
 
 /// A pose at which a shape is about a triangle of the mesh: just apart, touching, inside.

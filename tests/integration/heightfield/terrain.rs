@@ -25,7 +25,7 @@ impl Terrain {
 
     /// Hills at random, `cells` along z and x, with every kind of cell.
     pub fn random(random: &mut Rand32, cells: [usize; 2], scale: Vec3) -> Self {
-        let heights = heights(cells, |_, _| random.rand_float() - 0.5);
+        let heights = heights(cells, || random.rand_float() - 0.5);
         let mut field = HeightField::new(heights, scale);
         for i in 0..cells[0] {
             for j in 0..cells[1] {
@@ -57,7 +57,7 @@ impl Terrain {
 
     /// Steps, plains and cliffs: heights that are whole multiples of a quarter, cells of a half.
     pub fn lattice(random: &mut Rand32) -> Self {
-        let heights = heights([12, 16], |_, _| random.rand_range(0..3) as Real * 0.25);
+        let heights = heights([12, 16], || random.rand_range(0..3) as Real * 0.25);
         Self::new(HeightField::new(heights, Vec3::new(8.0, 1.0, 6.0)))
     }
 }
@@ -74,15 +74,10 @@ pub(super) fn terrains() -> Vec<Terrain> {
     ]
 }
 
-pub(super) fn heights(
-    cells: [usize; 2],
-    mut height: impl FnMut(usize, usize) -> Real,
-) -> Array2<Real> {
-    let mut data = Vec::new();
-    for j in 0..=cells[1] {
-        data.extend((0..=cells[0]).map(|i| height(i, j)));
-    }
-    Array2::new(cells[0] + 1, cells[1] + 1, data)
+/// Draws the heights of a field of so many cells along z and x.
+pub(super) fn heights(cells: [usize; 2], mut draw: impl FnMut() -> Real) -> Array2<Real> {
+    let [rows, columns] = cells.map(|cells| cells + 1);
+    Array2::new(rows, columns, (0..rows * columns).map(|_| draw()).collect())
 }
 
 /// The terrain of the laboratory as a field.

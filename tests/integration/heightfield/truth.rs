@@ -149,7 +149,7 @@ fn non_finite_heights_make_holes() {
     let mut random = Rand32::new(5);
     let ball = shape(&mesh::ball(0.7, 6));
     for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {
-        let heights = heights([14, 14], |_, _| match random.rand_range(0..6) {
+        let heights = heights([14, 14], || match random.rand_range(0..6) {
             0 => broken,
             _ => 0.3 * random.rand_float(),
         });
