@@ -14,40 +14,18 @@ pub struct Pair {
     pub contact: TriangleContact,
 }
 
-/// How two triangles meet.
-#[derive(Clone, Copy, Debug)]
-pub enum Kind {
-    All,
-    VertexFace,
-    EdgeEdge,
-    VertexEdge,
-    VertexVertex,
-    Crossing,
-}
-
-impl Kind {
-    pub const ALL: [Self; 6] = [
-        Self::All,
-        Self::VertexFace,
-        Self::EdgeEdge,
-        Self::VertexEdge,
-        Self::VertexVertex,
-        Self::Crossing,
-    ];
-
-    pub fn holds(self, pair: &Pair) -> bool {
+impl Pair {
+    /// How the triangles meet, by name.
+    pub fn kind(&self) -> &'static str {
         use Feature::{Edge, Face, Vertex};
-        let features = (pair.contact.features.feature1(), pair.contact.features.feature2());
-        let apart = pair.contact.distance > 0.0;
-        match self {
-            Self::All => true,
-            Self::Crossing => !apart,
-            Self::VertexFace => apart && matches!(features, (Vertex(_), Face) | (Face, Vertex(_))),
-            Self::EdgeEdge => apart && matches!(features, (Edge(_), Edge(_))),
-            Self::VertexEdge => {
-                apart && matches!(features, (Vertex(_), Edge(_)) | (Edge(_), Vertex(_)))
-            }
-            Self::VertexVertex => apart && matches!(features, (Vertex(_), Vertex(_))),
+        let TriangleContact { features, distance, .. } = self.contact;
+        match (features.feature1(), features.feature2()) {
+            _ if distance <= 0.0 => "Crossing",
+            (Vertex(_), Face) | (Face, Vertex(_)) => "VertexFace",
+            (Edge(_), Edge(_)) => "EdgeEdge",
+            (Vertex(_), Edge(_)) | (Edge(_), Vertex(_)) => "VertexEdge",
+            (Vertex(_), Vertex(_)) => "VertexVertex",
+            _ => "Other",
         }
     }
 }
