@@ -111,9 +111,10 @@ fn everyday_scenes_touch_and_are_judged() {
 /// another column.
 #[test]
 fn the_control_passes_and_sheets_hold_plain_meshes() {
+    let columns = vec![Column::StockFlag, Column::Sbbk, Column::Control];
     let plan = HardPlan {
         groups: vec![hard::Group::Sunk, hard::Group::Sheets],
-        settings: Settings::of(&[Column::StockFlag, Column::Sbbk, Column::Control]),
+        settings: Settings { columns, ..Settings::default() },
         mesh: None,
     };
     let results = hard::hard(&plan, &Progress::hidden()).unwrap();
@@ -136,7 +137,8 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
 /// gears and bowls are left out: their hulls have seams. Rapier's shapes drop some parts of grippers.
 #[test]
 fn random_scenes_hold_with_rapiers_own_shapes() {
-    let settings = Settings::of(&[Column::Stock, Column::Sbbk, Column::Control]);
+    let columns = vec![Column::Stock, Column::Sbbk, Column::Control];
+    let settings = Settings { columns, ..Settings::default() };
     let options = Options { seed: 1, unit: None, iterations: None, no_sweeps: false };
     let without = [Family::Chains, Family::Gears, Family::Bowls, Family::Grippers];
     let mut families = Family::value_variants().to_vec();

@@ -61,7 +61,7 @@ pub enum Group {
 }
 
 /// How scenes run.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub struct Settings {
     /// Runs only these columns
     #[arg(long = "backends", value_name = "COLUMNS", value_delimiter = ',')]
@@ -72,13 +72,6 @@ pub struct Settings {
     /// Writes a page that plays the first scene, all columns side by side
     #[arg(long, value_name = "FILE")]
     pub replay: Option<PathBuf>,
-}
-
-impl Settings {
-    /// Settings without a page.
-    pub fn of(columns: &[Column]) -> Self {
-        Self { columns: columns.to_vec(), verbose: false, replay: None }
-    }
 }
 
 /// Extent of the study.
