@@ -2,8 +2,6 @@ use crate::heightfield::terrain::{Terrain, rolling};
 use crate::prelude::*;
 use rapier3d::parry::query::distance as shape_distance;
 
-type Point = TrackedContact<()>;
-
 /// Would catch a direction left out because a neighbour is nearer, and near contacts that are kept. Soft CCD needs
 /// each direction of the larger shape's local minima beyond a tenth of the radius.
 #[test]
@@ -46,8 +44,7 @@ fn far_contacts_have_every_direction() {
 
 /// Returns true if no triangle of mesh 1 at a contact's point has a point nearer to the point of mesh 2.
 fn is_minimum(mesh1: &TriMesh, pos12: &Pose, manifold: &Manifold) -> bool {
-    let by_distance = |a: &&Point, b: &&Point| a.dist.total_cmp(&b.dist);
-    let point = manifold.points.iter().min_by(by_distance).expect("a point");
+    let point = manifold.find_deepest_contact().expect("a point");
     let point2 = pos12 * point.local_p2;
     let around =
         mesh1.triangles().filter(|one| one.distance_to_local_point(point.local_p1, false) < 1e-4);

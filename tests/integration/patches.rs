@@ -197,8 +197,7 @@ fn far_contacts_are_outside_of_solids() {
         assert!(found.iter().map(distance).any(|distance| distance <= 0.0));
         for manifold in found.iter().filter(|manifold| distance(manifold) > 0.2 * HALF) {
             // Other points of a manifold may be beside the contact.
-            let is_contact = |point: &&TrackedContact<()>| point.dist == distance(manifold);
-            let contact = manifold.points.iter().find(is_contact).expect("a manifold has points");
+            let contact = manifold.find_deepest_contact().expect("a manifold has points");
             let [one, two] = place(&pos12, manifold, contact);
             let middle = 0.5 * (one + two);
             count += 1;

@@ -63,8 +63,7 @@ pub fn settled(
 
 /// Height of the lowest vertex of a mesh.
 pub fn lowest(mesh: &Mesh, pose: &Pose) -> Real {
-    let heights = mesh.vertices.iter().map(|&vertex| pose.transform_point(vertex).y);
-    heights.fold(Real::INFINITY, Real::min)
+    mesh.clone().posed(pose).bounds().mins.y
 }
 
 /// Bodies of `shape` at these places. Stock answers if there is no dispatcher.

@@ -17,13 +17,7 @@ fn rods() -> Vec<Rod> {
     let ends = vec![Vec3::Y * LONG, Vec3::Y * -LONG];
     let [a, b] = [ends[0], ends[1]];
     let side = Vec3::new(0.2, 0.1, 0.6);
-    let bar = |half: Real| {
-        let corner = |i: u8| {
-            let sign = |axis: u8| if i >> axis & 1 == 0 { 1.0 } else { -1.0 };
-            Vec3::new(half * sign(0), LONG * sign(1), half * sign(2))
-        };
-        (0..8).map(corner).collect::<Vec<_>>()
-    };
+    let bar = |half: Real| mesh::cuboid(Vec3::new(half, LONG, half), 1).vertices;
     let prism: Vec<Vec3> = [a, b]
         .into_iter()
         .flat_map(|end| [Vec3::NEG_X, Vec3::X, Vec3::Z].map(|side| end + THIN * side))

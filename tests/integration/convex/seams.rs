@@ -41,11 +41,6 @@ fn a_floor_of_triangles_is_flat() {
     assert!(slanted > 1000, "{slanted} of triangles by themselves");
 }
 
-/// Point at which two shapes are nearest.
-fn nearest(manifold: &Manifold) -> Option<&TrackedContact<()>> {
-    manifold.points.iter().min_by(|a, b| a.dist.total_cmp(&b.dist))
-}
-
 /// Would catch neighbours missed because they share no vertices, minima left out, and crossing
 /// bodies without a deep contact. A contact belongs to the surface if no other triangle is nearer
 /// at its point.
@@ -81,7 +76,7 @@ fn contacts_of_a_surface_are_the_nearest_at_their_points() {
                 if !is_face && along > 0.999_99 {
                     continue;
                 }
-                let Some(nearest) = nearest(manifold) else { continue };
+                let Some(nearest) = manifold.find_deepest_contact() else { continue };
                 let gap = |other: &Manifold| {
                     let triangle = mesh.triangle(other.subshape1);
                     let is_there =
