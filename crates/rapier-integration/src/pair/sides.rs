@@ -105,38 +105,29 @@ const SLAB: Real = 0.1;
 const SURE: f64 = 0.99;
 
 /// Last result of the test whether the smaller mesh is inside the larger one. Spares most queries a test.
+///
+/// The larger mesh was such a room at this placement of the smaller mesh, and stays one for this motion. [`Room::No`] if a
+/// point of the smaller mesh was this far outside, or if the larger mesh is no solid. `None` before a test.
 #[derive(Clone, Debug, Default)]
-pub(crate) enum InsideTest {
-    #[default]
-    Unknown,
-    /// The larger mesh is no solid.
-    NoSolid,
-    /// The larger mesh was such a room at this placement of the smaller mesh, and stays one for this motion. [`Room::No`] if a
-    /// point of the smaller mesh was this far outside.
-    Known(Room, Placement, f64),
-}
+pub(crate) struct InsideTest(Option<(Room, Placement, f64)>);
 
 impl InsideTest {
     /// The larger mesh stays such a room for a motion of `slack`.
     fn new(room: Room, placement: &Placement, slack: f32) -> Self {
-        Self::Known(room, *placement, SURE * f64::from(slack))
+        Self(Some((room, *placement, SURE * f64::from(slack))))
     }
 
     /// Returns the room that holds a mesh. `None` if the last result does not hold for a mesh with points in `ball`.
     fn known(&self, ball: Sphere, placement: &Placement) -> Option<Room> {
-        let room = if let Self::Known(room, ..) = self { *room } else { Room::No };
+        let (room, ..) = self.0?;
         (self.rest(ball, placement) > 0.0).then_some(room)
     }
 
     /// Returns the motion for which the last result still holds.
     fn rest(&self, ball: Sphere, placement: &Placement) -> f64 {
-        match self {
-            Self::Unknown => 0.0,
-            Self::NoSolid => f64::INFINITY,
-            Self::Known(_, before, slack) => {
-                slack - placement.motion_bound(before, ball.centre, ball.radius)
-            }
-        }
+        self.0.as_ref().map_or(0.0, |(_, before, slack)| {
+            slack - placement.motion_bound(before, ball.centre, ball.radius)
+        })
     }
 }
 
@@ -199,7 +190,7 @@ impl<'a> HeldMesh<'a> {
     fn is_behind_wall(&self, middle: Vector, test: &mut InsideTest) -> bool {
         let most = f64::from(STICKS_OUT * self.held.ball().radius);
         if test.rest(self.held.ball(), self.placement()) > most
-            && let InsideTest::Known(_, _, slack) = test
+            && let Some((_, _, slack)) = &mut test.0
         {
             *slack -= most;
             return false;
@@ -207,7 +198,7 @@ impl<'a> HeldMesh<'a> {
         if self.surface.kind() != SurfaceKind::InsideOut {
             return false;
         }
-        *test = InsideTest::Unknown;
+        *test = InsideTest::default();
         let Some((_, wall, behind)) = self.surface.nearest(middle) else { return false };
         let height = self.held.height(self.way_to(wall), Real::INFINITY);
         behind <= -BEHIND
@@ -314,7 +305,7 @@ impl<'a> HeldMesh<'a> {
         }
         self.room_around(vertex, test)?;
         if surface.kind() == SurfaceKind::Sheet {
-            *test = InsideTest::NoSolid;
+            *test = InsideTest::new(Room::No, self.placement(), Real::INFINITY);
             return None;
         }
         let middle = self.in_holder(held.ball().centre);
