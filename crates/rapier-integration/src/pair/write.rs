@@ -49,8 +49,6 @@ struct OldPoint<C> {
     part: u32,
     /// Unit vector across the contact.
     normal: Vec3,
-    /// Place in the host's list.
-    place: u32,
     /// True if a new point has its data.
     is_taken: bool,
 }
@@ -151,16 +149,14 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         old_parts.extend(self.manifolds.iter().map(part_of).zip(0..));
         old_parts.sort_unstable();
         old_points.clear();
-        old_points.extend(self.manifolds.iter().flat_map(|manifold| {
-            let (part, subshapes) = (part_of(manifold), subshapes_of(manifold));
-            let normal = manifold.local_n1;
+        old_points.extend(old_parts.iter().flat_map(|&(part, index)| {
+            let manifold = &self.manifolds[index as usize];
+            let (subshapes, normal) = (subshapes_of(manifold), manifold.local_n1);
             manifold.points.iter().map(move |&point| {
                 let point = if names_are_raw { named(point, subshapes) } else { point };
-                OldPoint { point, part, normal, place: 0, is_taken: false }
+                OldPoint { point, part, normal, is_taken: false }
             })
         }));
-        (0..).zip(&mut *old_points).for_each(|(place, old)| old.place = place);
-        old_points.sort_unstable_by_key(|old| (old.part, old.place));
     }
 
     /// Writes a manifold for each contact, in the order of subshapes.
@@ -342,10 +338,9 @@ fn without_noise(normal: Vec3) -> Vec3 {
     Vec3::select(normal.abs().cmplt(Vec3::splat(Real::EPSILON)), Vec3::ZERO, normal)
 }
 
-fn with_data<C: Default + Copy>(point: &TrackedContact<()>, data: C) -> TrackedContact<C> {
+fn with_data<C>(point: &TrackedContact<()>, data: C) -> TrackedContact<C> {
     let TrackedContact { local_p1, local_p2, fid1, fid2, dist, .. } = *point;
-    let point = TrackedContact::new(local_p1, local_p2, fid1, fid2, dist);
-    TrackedContact { data, ..point }
+    TrackedContact { local_p1, local_p2, fid1, fid2, dist, data }
 }
 
 /// Gives the points of a manifold the data that they had in patches.
