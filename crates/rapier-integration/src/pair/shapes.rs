@@ -52,6 +52,11 @@ pub(super) fn filter_unit(pose: &PairPose, filter_distance: f64) -> f64 {
 /// Normal cones of both triangles.
 pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
 
+/// Returns normal cones as Parry takes them.
+pub(super) fn as_cones(of_triangles: &[Option<TrianglePseudoNormals>; 2]) -> Cones<'_> {
+    of_triangles.each_ref().map(|cone| Some(cone.as_ref()? as &dyn NormalConstraints))
+}
+
 /// Features that were closest at the last query, to be tried first.
 pub(super) type Hint = Option<FeaturePair>;
 
@@ -175,16 +180,6 @@ pub(super) enum ContactSource {
     OutwardAxis,
     /// Two shapes, one inside the other, or deep in each other.
     PushOut,
-}
-
-impl ContactSource {
-    /// Returns the normal cones of both triangles that a contact obeys.
-    pub(super) fn cones(self, of_triangles: &[Option<TrianglePseudoNormals>; 2]) -> Cones<'_> {
-        of_triangles.each_ref().map(|cone| {
-            let cone = cone.as_ref().filter(|_| self != Self::PushOut)?;
-            Some(cone as &dyn NormalConstraints)
-        })
-    }
 }
 
 /// Returns the contact of two triangles within a distance. `hint` has the features to be tried first.

@@ -33,7 +33,7 @@ use super::query::{Candidate, ContactList, ContactPoints, Limits, Memory, Pair, 
 use super::reduce::{ContactSummary, PatchPlan};
 use super::shapes::{
     ContactSource, FieldShape, Hint, MeshShape, NEARLY_TOUCHING, Room, TriangleHit, TriangleShape,
-    TriangleShapes, TriangleSurfaceContact, contact_of, filter_distance,
+    TriangleShapes, TriangleSurfaceContact, as_cones, contact_of, filter_distance,
 };
 use super::sides::{HeldMesh, InsideTest};
 use super::surface::{SurfaceFilter, Verdict, leans};
@@ -344,12 +344,12 @@ impl PairQuery for TriangleQuery<'_> {
         scratch: &mut TriangleScratch,
         points: &mut ContactPoints,
     ) -> Option<ContactSummary> {
-        let (pair, TriangleSurfaceContact { contact, source }) = hit;
+        let (pair, TriangleSurfaceContact { contact, .. }) = hit;
         let corners = [self.shapes[0].corners(pair[0])?, self.shapes[1].corners(pair[1])?];
         let [[origin, ..], _] = corners;
         let [side1, side2] = corners.map(|of| longest_side(&of.map(|corner| corner.as_dvec3())));
         let of_triangles = self.shapes.cones(*pair);
-        let cones = source.cones(&of_triangles);
+        let cones = as_cones(&of_triangles);
         let normal = constrained_normal(contact, cones, &self.shapes.pose.pos12)?;
         let point = (origin.as_dvec3() + contact.point1).as_vec3();
         let mut distance = contact.distance as Real;
@@ -392,7 +392,7 @@ impl PairQuery for TriangleQuery<'_> {
         }
         let deepest = -shapes.filter_distance.max(DEEPEST * f64::from(pose.prediction));
         clipped.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
-        write_triangle_points(pose, &local, contact, clipped, source.cones(&of_triangles), points);
+        write_triangle_points(pose, &local, contact, clipped, as_cones(&of_triangles), points);
     }
 }
 
