@@ -54,9 +54,3 @@ impl TriangleFlags {
         self.0.fetch_or(is_searched | if found { has_strays } else { 0 }, Ordering::Relaxed);
     }
 }
-
-impl Clone for TriangleFlags {
-    fn clone(&self) -> Self {
-        Self(AtomicU32::new(self.0.load(Ordering::Relaxed)))
-    }
-}
