@@ -177,11 +177,6 @@ impl OverlapIslands {
         crossing.chain(touching.copied())
     }
 
-    /// Returns a crossing, by its index, unless its contact is final.
-    pub(super) fn open(&self, index: usize) -> Option<Crossing> {
-        Some(self.crossings[index]).filter(|crossing| !crossing.is_fine())
-    }
-
     /// Finds the ways that part whole islands, and rejects contacts that push aside. Returns true if a second pass is needed. `small`: depth of bodies at rest.
     /// `is_parted` tells if a way of a length parts two triangles, and both surfaces end there.
     pub(super) fn settle_one_ways(

@@ -148,13 +148,12 @@ impl TriangleQuery<'_> {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
         // Islands with a leading way have enough contacts.
         contacts.extend(islands.of_contours(|island| islands.open_support(island).is_some()));
-        for i in 0..islands.crossings.len() {
-            let Some(crossing) = islands.open(i) else { continue };
+        for crossing in islands.crossings.iter().filter(|crossing| !crossing.is_fine()) {
             let Some(support) = islands.open_support(crossing.island) else { continue };
             let contact = match islands.way_out(crossing.island) {
-                Some(way) => self.contact_along(&crossing, way),
+                Some(way) => self.contact_along(crossing, way),
                 None => {
-                    let then = |it: &SurfaceFilter<'_>| it.supporting_contact(&crossing, support);
+                    let then = |it: &SurfaceFilter<'_>| it.supporting_contact(crossing, support);
                     self.shapes.with_filter(crossing.pair, then).flatten()
                 }
             };
