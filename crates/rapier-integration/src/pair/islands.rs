@@ -21,9 +21,9 @@ pub(crate) struct OverlapIslands {
     /// A pair with each triangle.
     with_triangle: FxHashMap<Node, usize>,
     /// Ways that part all pairs of an island at a small depth, and the depths.
-    one_ways: Directions,
+    pub(super) one_ways: Directions,
     /// Way out of each island whose contour has one, by island.
-    ways_out: Vec<Option<IslandWay>>,
+    pub(super) ways_out: Vec<Option<IslandWay>>,
     /// Contacts along these ways in the middles of contours and at points of them, with their islands.
     of_contours: Vec<(usize, TriangleHit)>,
     /// Support of each island, by island. Others have no pairs.
@@ -244,14 +244,9 @@ impl OverlapIslands {
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
     }
 
-    /// Returns the way out of an island, if its contour has one.
-    pub(super) fn way_out(&self, island: usize) -> Option<IslandWay> {
-        self.ways_out[island]
-    }
-
     /// Returns the way out of an island whose pairs all have contacts along it.
     pub(super) fn leading_way(&self, island: usize) -> Option<IslandWay> {
-        self.way_out(island).filter(|way| way.has_middle)
+        self.ways_out[island].filter(|way| way.has_middle)
     }
 
     /// Sets the way out of an island, and the contacts along the way.

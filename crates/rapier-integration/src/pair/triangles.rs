@@ -309,7 +309,7 @@ impl PairQuery for TriangleQuery<'_> {
         if self.settle_one_ways(islands) {
             self.second_pass(islands, contacts);
         }
-        self.drop_lifted(islands.one_ways(), contacts);
+        self.drop_lifted(&islands.one_ways, contacts);
         if limits.reach < f64::from(self.shapes.pose.prediction) {
             self.shapes.add_far(!*is_near, lead_one_way, contacts);
         } else if limits.reach > self.shapes.filter_distance {

@@ -45,9 +45,4 @@ impl OverlapIslands {
             crossing.is_rejected |= way.dot(crossing.normal) < SAME_SIDE;
         }
     }
-
-    /// Returns the ways that part all pairs of an island at a small depth, and the depths.
-    pub(in crate::pair) fn one_ways(&self) -> &[(DVec3, f64)] {
-        &self.one_ways
-    }
 }

@@ -150,7 +150,7 @@ impl TriangleQuery<'_> {
         contacts.extend(islands.of_contours(|island| islands.open_support(island).is_some()));
         for crossing in islands.crossings.iter().filter(|crossing| !crossing.is_fine()) {
             let Some(support) = islands.open_support(crossing.island) else { continue };
-            let contact = match islands.way_out(crossing.island) {
+            let contact = match islands.ways_out[crossing.island] {
                 Some(way) => self.contact_along(crossing, way),
                 None => {
                     let then = |it: &SurfaceFilter<'_>| it.supporting_contact(crossing, support);
