@@ -19,6 +19,7 @@ use super::islands::OverlapIslands;
 use super::query::ContactList;
 use super::shapes::{NEAR_NORMAL, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 use super::surface::{SurfaceFilter, Verdict};
+use crate::mesh::LazySurface;
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
@@ -120,7 +121,7 @@ impl TriangleShapes<'_> {
         let within = self.pose.prediction;
         for i in 0..2 {
             let mut nearest: Option<TriangleHit> = None;
-            for (half_edge, tip) in self[i].tips() {
+            for (half_edge, tip) in self[i].surface().into_iter().flat_map(LazySurface::tips) {
                 let Some(hit) = self.of_point(i, half_edge, tip, within) else { continue };
                 found(hit);
                 self.step(1 - i, &hit, distance(&hit)).into_iter().for_each(&mut found);

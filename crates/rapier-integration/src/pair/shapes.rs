@@ -347,11 +347,6 @@ impl<'q> TriangleShape<'q> {
         self.view().map_or(0.0, |view| view.height(direction, 0.0))
     }
 
-    /// Returns the least coordinate along a direction, in the frame of the shape; `None` if not known.
-    pub(super) fn lowest(&self, direction: Vector) -> Option<Real> {
-        Some(self.view()?.lowest(direction))
-    }
-
     /// Returns the nearest point of the surface, and the cosine between the direction to the point
     /// and the inward normal.
     pub(super) fn nearest(&self, point: Vector) -> Option<(Vector, Real)> {
@@ -436,11 +431,6 @@ impl<'q> TriangleShape<'q> {
             }
             Self::Field(FieldShape { field, .. }) => field.nearest_triangle(point, within),
         }
-    }
-
-    /// Returns the tips of a mesh and half-edges that start there, for [far](super::far) contacts.
-    pub(super) fn tips(&self) -> impl Iterator<Item = (u32, Vector)> {
-        self.surface().into_iter().flat_map(LazySurface::tips)
     }
 }
 
