@@ -2,14 +2,14 @@ use std::sync::{Arc, OnceLock};
 
 use glamx::Vec3;
 use parry3d::math::Real;
-use sbbk_core::surface::{Around, PlaceMemo, Side, Surface, SurfaceKind, is_surely_open};
+use sbbk_core::surface::{Around, PAIRED, PlaceMemo, Side, Surface, SurfaceKind, is_surely_open};
 use sbbk_core::tree::Tree;
 
 use super::data::{MeshData, Tips};
 use super::facets::{MeshFacets, Twins};
 use super::identity::MeshToken;
 use super::rays::MeshRays;
-use super::store::{is_analysed, is_small};
+use super::store::is_small;
 use super::view::{MeshView, nearest};
 
 /// State of one mesh of a pair of colliders, kept from query to query.
@@ -158,7 +158,8 @@ impl<'a> LazySurface<'a> {
         let (data, mesh) = (self.data(), self.view.mesh);
         data.is_local(|| {
             let count = mesh.indices().len();
-            if !is_analysed(count) {
+            // The analysis of a mesh of this size takes 50 ms.
+            if count > PAIRED {
                 return true;
             }
             let has_border = || count > LEAST && self.view.has_bare_edge();

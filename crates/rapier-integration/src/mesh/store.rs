@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, Weak};
 
 use parry3d::shape::{SharedShape, TriMesh};
-use sbbk_core::surface::{PAIRED, Surface, SurfaceKind};
+use sbbk_core::surface::{Surface, SurfaceKind};
 use sbbk_core::tree::{BuildError, BuildOptions};
 
 use super::budget::BuildBudget;
@@ -298,12 +298,6 @@ pub(crate) fn use_trees(meshes: [&TriMesh; 2]) -> bool {
 /// True if a mesh of so many triangles may get a tree in a step.
 pub(super) fn is_small(triangle_count: usize) -> bool {
     triangle_count <= BuildBudget::LIMIT as usize
-}
-
-/// True if an unregistered mesh is analysed as a whole, in up to 50 ms. The triangles of a larger one
-/// are analysed where something touches.
-pub(super) fn is_analysed(triangle_count: usize) -> bool {
-    triangle_count <= PAIRED
 }
 
 /// Removes dead entries, if the map is full.
