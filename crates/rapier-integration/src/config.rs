@@ -1,4 +1,4 @@
-use sbbk_core::tree::{BuildOptions, LayerPlan};
+use sbbk_core::tree::LayerPlan;
 #[cfg(feature = "serde-serialize")]
 use serde::{Deserialize, Serialize};
 
@@ -143,10 +143,6 @@ impl SbbkConfig {
     /// Returns true if convex shapes are pushed out of solids.
     pub(crate) fn leave_solids(&self) -> bool {
         self.wants_surfaces() && self.convex_leave_solids
-    }
-
-    pub(crate) fn build_options(&self) -> BuildOptions {
-        BuildOptions { layers: self.layers, ..BuildOptions::default() }
     }
 }
 
