@@ -204,16 +204,15 @@ impl TriangleShapes<'_> {
         descent: &mut DescentChunk,
     ) {
         let bends_little = |i: usize, triangle: u32| self.bends_little(i, triangle);
-        let culling = self.lateral_culling(margin);
-        let culling = culling.map(|lateral| Culling { lateral, may_reject: &bends_little });
-        let search = BvhDescent::new(meshes, self.pose.placement12, margin, culling);
+        let lateral = self.lateral_culling(margin);
+        let search = BvhDescent::new(meshes, self.pose.placement12, margin, lateral);
         search.list_near(near, &mut descent.counts);
         let doubles = self.doubles();
         let larger = doubles[self.larger];
         near.retain(|&triangle| !larger.is_some_and(|surface| surface.is_double(triangle)));
         in_chunks(near, LEAST_NEAR, descent, &|near: &mut [u32], chunk: &mut DescentChunk| {
             let DescentChunk { found, counts, .. } = chunk;
-            let _ = search.pairs(near, counts, |pair| {
+            let _ = search.pairs(near, counts, bends_little, |pair| {
                 if !has_double(&doubles, pair) {
                     found.push(Candidate::new(pair));
                 }
@@ -282,14 +281,6 @@ const GROUP: usize = 64;
 /// nothing.
 const LEAST_GROUP: usize = 16;
 
-/// A test for triangles beside each other.
-#[derive(Copy, Clone)]
-pub(crate) struct Culling<'a> {
-    pub(crate) lateral: LateralCulling,
-    /// Returns true if pairs beside a triangle of mesh 1 (0) or 2 (1) may be left out.
-    pub(crate) may_reject: &'a (dyn Fn(usize, u32) -> bool + Sync),
-}
-
 /// A descent of the BVHs of two meshes.
 pub(crate) struct BvhDescent<'a> {
     /// The larger mesh, and the other one.
@@ -299,23 +290,23 @@ pub(crate) struct BvhDescent<'a> {
     /// The other mesh in the frame of the larger one.
     placement12: Placement,
     margin: f32,
-    culling: Option<Culling<'a>>,
+    lateral: Option<LateralCulling>,
 }
 
 impl<'a> BvhDescent<'a> {
-    /// A descent to all pairs of triangles within `margin` except those that `culling` excludes.
+    /// A descent to all pairs of triangles within `margin`, without some beside each other if `lateral` is set.
     pub(crate) fn new(
         meshes: [&'a MeshView<'a>; 2],
         placement12: Placement,
         margin: f32,
-        culling: Option<Culling<'a>>,
+        lateral: Option<LateralCulling>,
     ) -> Self {
         let [mesh1, mesh2] = meshes;
         if mesh1.size_squared() < mesh2.size_squared() {
             let (meshes, placement12) = ([mesh2, mesh1], placement12.inverted());
-            Self { meshes, is_swapped: true, placement12, margin, culling }
+            Self { meshes, is_swapped: true, placement12, margin, lateral }
         } else {
-            Self { meshes, is_swapped: false, placement12, margin, culling }
+            Self { meshes, is_swapped: false, placement12, margin, lateral }
         }
     }
 
@@ -335,11 +326,13 @@ impl<'a> BvhDescent<'a> {
         counters.aabb_tests(tested.get());
     }
 
-    /// Calls `found` with the pairs of triangles in `near`, in any order, until it breaks.
+    /// Calls `found` with the pairs of triangles in `near`, in any order, until it breaks. `may_reject` returns true if pairs
+    /// beside a triangle of mesh 1 (0) or 2 (1) may be left out.
     pub(crate) fn pairs(
         &self,
         near: &[u32],
         mut counters: impl Counters,
+        may_reject: impl Fn(usize, u32) -> bool,
         mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if near.is_empty() {
@@ -363,9 +356,11 @@ impl<'a> BvhDescent<'a> {
             many.len() < LEAST_GROUP || mesh2.near(|node| meets(&group, node)).next().is_some()
         };
         let mut fours = near.chunks(GROUP).filter(is_near).flat_map(|many| many.chunks(BATCH));
+        let may_reject = |i: usize, of: u32| may_reject(i ^ usize::from(self.is_swapped), of);
         let flow = fours.try_for_each(|triangles| {
             let group = in_frame2.of(mesh1.tested(triangles));
-            self.pairs_of_four(triangles, &test, |node| meets(&group, node), &mut found)
+            let meets = |node| meets(&group, node);
+            self.pairs_of_four(triangles, &test, meets, &may_reject, &mut found)
         });
         counters.aabb_tests(tested.get());
         flow
@@ -377,20 +372,17 @@ impl<'a> BvhDescent<'a> {
         triangles: &[u32],
         test: &LeafTest,
         meets: impl Fn(TestedBox) -> bool,
+        may_reject: &impl Fn(usize, u32) -> bool,
         found: &mut impl FnMut([u32; 2]) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let Self { meshes: [mesh1, mesh2], culling, is_swapped, .. } = *self;
-        let lateral = culling.as_ref().map(|culling| &culling.lateral);
+        let Self { meshes: [mesh1, mesh2], is_swapped, .. } = *self;
+        let lateral = self.lateral.as_ref();
         let batch1 = LeafBatch::gather(triangles, |triangle| mesh1.corners(triangle));
         let mut decide = |near2: &[u32]| {
             let batch2 = LeafBatch::gather(near2, |triangle| mesh2.corners(triangle));
             let mut flow = ControlFlow::Continue(());
             let lists = [triangles, near2];
-            let may_reject = |i: usize, lane: usize| {
-                let may_reject =
-                    |of: Culling<'_>| (of.may_reject)(i ^ usize::from(is_swapped), lists[i][lane]);
-                culling.is_some_and(may_reject)
-            };
+            let may_reject = |i: usize, lane: usize| may_reject(i, lists[i][lane]);
             test.survivors_in_front(lateral, &batch1, &batch2, may_reject, |lane1, lane2| {
                 if flow.is_continue() {
                     let [one, two] = [triangles[lane1], near2[lane2]];

@@ -231,7 +231,7 @@ impl BvhSearch<'_> {
         let (margin, near) = ((limit.max(0.0) as Real).next_up(), &mut Vec::new());
         let descent = BvhDescent::new(self.meshes, self.placement, margin, None);
         descent.list_near(near, ());
-        let _ = descent.pairs(near, (), visit);
+        let _ = descent.pairs(near, (), |_, _| false, visit);
     }
 
     /// Returns the normal of a contact in the frames of both meshes.
