@@ -63,7 +63,14 @@ impl PairMesh {
             Self::Unknown => Change::Unknown,
             Self::Rigid(_) | Self::Deformable => Change::Replaced,
         };
-        *self = Self::Rigid(Box::new(RigidMesh::new(view, token)));
+        *self = Self::Rigid(Box::new(RigidMesh {
+            token,
+            store_id: view.store.id,
+            searched_at: None,
+            is_registered: false,
+            declared_kind: None,
+            data: OnceLock::new(),
+        }));
         change
     }
 
@@ -86,22 +93,12 @@ impl PairMesh {
         if needs_tree && !is_first && is_small(mesh.indices().len()) {
             store.build_within_budget(mesh, known.data.get_or_init(|| store.entry(mesh)));
         }
-        Some(known.surface(view))
+        let (declared, memo) = Default::default();
+        Some(LazySurface { data: &known.data, view, declared, memo })
     }
 }
 
 impl RigidMesh {
-    fn new(view: &MeshView<'_>, token: MeshToken) -> Self {
-        Self {
-            token,
-            store_id: view.store.id,
-            searched_at: None,
-            is_registered: false,
-            declared_kind: None,
-            data: OnceLock::new(),
-        }
-    }
-
     /// Takes note of registrations and declared kinds since the last query.
     fn refresh(&mut self, view: &MeshView<'_>) -> Change {
         let registrations = view.store.registrations();
@@ -123,11 +120,6 @@ impl RigidMesh {
         self.is_registered = data.is_some();
         self.declared_kind = data.as_ref().and_then(|data| data.declared_kind());
         self.data = data.map(OnceLock::from).unwrap_or_default();
-    }
-
-    fn surface<'a>(&'a self, view: &'a MeshView<'a>) -> LazySurface<'a> {
-        let (declared, memo) = Default::default();
-        LazySurface { data: &self.data, view, declared, memo }
     }
 }
 
