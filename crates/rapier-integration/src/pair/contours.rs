@@ -94,9 +94,7 @@ type Points<'s> = ArrayVec<(&'s Segment, DVec3), CONTOUR_POINTS>;
 /// A closed contour.
 struct Contour<'s> {
     segments: &'s [Segment],
-    inset: f64,
-    /// Depth up to which bodies leave an overlap along its contour.
-    most: f64,
+    length: f64,
     /// A point of the overlap in the middle of the contour.
     middle: DVec3,
     /// Direction of the area vector: shape 2 leaves shape 1 along it.
@@ -112,7 +110,6 @@ impl<'s> Contour<'s> {
         let moment: DVec3 = segments.iter().map(|one| one.length() * one.middle()).sum();
         let middle = moment / length;
         let outward: DVec3 = segments.iter().map(|one| one.length() * one.outward).sum();
-        let inset = INSET * length;
         let gap: DVec3 = segments.iter().map(|Segment { ends: [from, to], .. }| to - from).sum();
         let areas = segments.iter().map(|one| {
             let [from, to] = one.ends.map(|end| end - middle);
@@ -125,9 +122,8 @@ impl<'s> Contour<'s> {
         let mut ends = segments.iter().flat_map(|one| one.ends);
         (is_closed && area.length() > COHERENT * swept).then(|| Self {
             segments,
-            inset,
-            most: DEPTH_PER_LENGTH * length,
-            middle: middle - inset / length * outward,
+            length,
+            middle: middle - INSET * length / length * outward,
             normal,
             is_flat: ends.all(|end| (end - middle).dot(normal).abs() <= UNEVEN * length),
         })
@@ -149,7 +145,7 @@ impl<'s> Contour<'s> {
             let left = self.segments.iter().filter(is_left);
             let farthest = left.max_by(|a, b| distance(a).total_cmp(&distance(b)));
             let Some(one) = farthest else { break };
-            chosen.push((one, one.middle() - self.inset * one.outward));
+            chosen.push((one, one.middle() - INSET * self.length * one.outward));
         }
         chosen
     }
@@ -194,9 +190,8 @@ pub(super) fn find_ways(
         let points = contour.points();
         let overlap = Overlap::of(shapes, island);
         let found = overlap.way_across(&contour, &points);
-        let Some((way, is_exact)) = found.filter(|(way, _)| way.length < contour.most) else {
-            continue;
-        };
+        let most = DEPTH_PER_LENGTH * contour.length;
+        let Some((way, is_exact)) = found.filter(|(way, _)| way.length < most) else { continue };
         let Way { normal, length, exits } = way;
         let way = IslandWay { normal, length, is_exact, has_middle: exits[0].is_some() };
         let contacts = points.iter().zip(exits).filter_map(|((segment, point), exits)| {
