@@ -235,24 +235,13 @@ impl KeptHull {
     }
 
     pub(super) fn of(&self, shape: &ConvexPolyhedron) -> &HullPoints {
-        let points = || shape.points().iter().copied();
         self.points.get_or_init(|| {
             if self.has_faces {
-                HullPoints::with_faces(points(), fans(shape))
+                let (points, triangles) = shape.to_trimesh();
+                HullPoints::with_faces(points, triangles)
             } else {
-                HullPoints::without_faces(points())
+                HullPoints::without_faces(shape.points().iter().copied())
             }
         })
     }
-}
-
-/// Returns the faces of a polyhedron, cut into triangles.
-fn fans(shape: &ConvexPolyhedron) -> impl Iterator<Item = [u32; 3]> {
-    let corners = shape.vertices_adj_to_face();
-    shape.faces().iter().flat_map(|face| {
-        let start = face.first_vertex_or_edge as usize;
-        let corners = &corners[start..start + face.num_vertices_or_edges as usize];
-        let (first, rest) = corners.split_first().unwrap_or((&0, &[]));
-        rest.windows(2).map(|ends| [*first, ends[0], ends[1]])
-    })
 }
