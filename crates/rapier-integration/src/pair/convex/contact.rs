@@ -114,12 +114,6 @@ pub(super) fn core_support(
     with_core!(shape, hull, |core| core.support(direction))
 }
 
-/// Contact of a triangle with the centre of a ball.
-#[inline(always)]
-pub(super) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-    convex_contact(triangle, &PointSupport(DVec3::ZERO), margin)
-}
-
 /// Returns true if a triangle crosses a shape without its radius or is within `reach` of it.
 pub(super) fn core_touches(
     placed: &PlacedPart,

@@ -8,11 +8,11 @@ use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Ball;
-use sbbk_core::contact::convex::ConvexContact;
+use sbbk_core::contact::convex::{ConvexContact, PointSupport, convex_contact};
 use sbbk_core::traverse::{BoxTest, DescentCounts, MovingBody, SlackLimits, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
-use super::contact::{Hit, PartContact, ball_contact, core_contact};
+use super::contact::{Hit, PartContact, core_contact};
 use super::ghosts::GhostContacts;
 use super::near::triangles_near;
 use super::pair::ConvexPair;
@@ -308,7 +308,10 @@ impl ConvexQuery<'_> {
         let ConvexPair { ref mesh, mesh_place, pose, .. } = *self.pair;
         let corners = placed.in_part(mesh.corners(triangle));
         let radius = f64::from(ball.radius);
-        let Some(contact) = ball_contact(&corners, margin + radius) else { return margin };
+        let centre = &PointSupport(DVec3::ZERO);
+        let Some(contact) = convex_contact(&corners, centre, margin + radius) else {
+            return margin;
+        };
         let distance = contact.distance - radius;
         if distance <= f64::from(pose.prediction) {
             contacts.push((mesh_place.swap([triangle, 0]), PartContact::new(contact, &corners)));
