@@ -1,7 +1,7 @@
 //! The exact contact of a triangle and a convex shape, by [`sbbk_core::contact::convex`].
 
 use glamx::DVec3;
-use parry3d::shape::{Cone, Cuboid, Cylinder, Segment, Triangle, TypedShape};
+use parry3d::shape::{Cuboid, TypedShape};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, PointSupport, SegmentSupport,
@@ -69,18 +69,23 @@ macro_rules! with_core {
             ConvexShape::Ball(_) => of!(&PointSupport(DVec3::ZERO)),
             ConvexShape::HalfSpace(_) => None,
             ConvexShape::Cuboid(cuboid) => of!(&cuboid_support(cuboid)),
-            ConvexShape::Features { shape, .. } => match shape.as_typed_shape() {
-                TypedShape::Segment(shape) => of!(&segment_support(shape)),
-                TypedShape::Capsule(shape) => of!(&segment_support(&shape.segment)),
-                TypedShape::Triangle(shape) => of!(&triangle_support(shape)),
-                TypedShape::RoundTriangle(shape) => of!(&triangle_support(&shape.inner_shape)),
-                TypedShape::Cylinder(shape) => of!(&cylinder_support(shape)),
-                TypedShape::RoundCylinder(shape) => of!(&cylinder_support(&shape.inner_shape)),
-                TypedShape::Cone(shape) => of!(&cone_support(shape)),
-                TypedShape::RoundCone(shape) => of!(&cone_support(&shape.inner_shape)),
-                TypedShape::RoundCuboid(shape) => of!(&cuboid_support(&shape.inner_shape)),
-                TypedShape::ConvexPolyhedron(shape) => of!($hull.of(shape)),
-                TypedShape::RoundConvexPolyhedron(shape) => of!($hull.of(&shape.inner_shape)),
+            ConvexShape::Features { core, .. } => match core {
+                TypedShape::Segment(it) => {
+                    of!(&SegmentSupport([it.a, it.b].map(|end| end.as_dvec3())))
+                }
+                TypedShape::Triangle(it) => {
+                    of!(&TriangleSupport([it.a, it.b, it.c].map(|corner| corner.as_dvec3())))
+                }
+                TypedShape::Cuboid(it) => of!(&cuboid_support(it)),
+                TypedShape::Cylinder(it) => {
+                    let (half_height, radius) = (it.half_height.into(), it.radius.into());
+                    of!(&CylinderSupport { half_height, radius })
+                }
+                TypedShape::Cone(it) => {
+                    let (half_height, radius) = (it.half_height.into(), it.radius.into());
+                    of!(&ConeSupport { half_height, radius })
+                }
+                TypedShape::ConvexPolyhedron(it) => of!($hull.of(it)),
                 _ => None,
             },
         }
@@ -130,24 +135,6 @@ pub(super) fn core_touches(
     core_contact(placed, triangle, shape, hull, reach).is_some()
 }
 
-fn segment_support(segment: &Segment) -> SegmentSupport {
-    SegmentSupport([segment.a, segment.b].map(|end| end.as_dvec3()))
-}
-
-fn triangle_support(triangle: &Triangle) -> TriangleSupport {
-    TriangleSupport(triangle.vertices().map(|corner| corner.as_dvec3()))
-}
-
 fn cuboid_support(cuboid: &Cuboid) -> CuboidSupport {
     CuboidSupport(cuboid.half_extents.as_dvec3())
-}
-
-fn cylinder_support(cylinder: &Cylinder) -> CylinderSupport {
-    let [half_height, radius] = [cylinder.half_height, cylinder.radius].map(f64::from);
-    CylinderSupport { half_height, radius }
-}
-
-fn cone_support(cone: &Cone) -> ConeSupport {
-    let [half_height, radius] = [cone.half_height, cone.radius].map(f64::from);
-    ConeSupport { half_height, radius }
 }

@@ -6,8 +6,8 @@ use arrayvec::ArrayVec;
 use glamx::{DVec3, Vec3};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{
-    ConvexPolyhedron, Cuboid, PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, ShapeType,
-    Triangle,
+    ConvexPolyhedron, Cuboid, PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, Triangle,
+    TypedShape,
 };
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{ConvexContact, FeaturePoint, FeaturePoints, clip_feature};
@@ -247,23 +247,19 @@ pub(super) fn facing_feature(
             feature = CUBE_FACES[face_toward(direction)].clone();
             feature.vertices = feature.vertices.map(|corner| corner * cuboid.half_extents);
         }
-        ConvexShape::Features { shape: of, map, .. } => {
-            if let Some(hull) = shape.polyhedron() {
-                return facing_face(hull, direction, point);
-            }
+        ConvexShape::Features { core: TypedShape::ConvexPolyhedron(hull), .. } => {
+            return facing_face(hull, direction, point);
+        }
+        ConvexShape::Features { core, map, .. } => {
             map.local_support_feature_toward(direction, point, &mut feature);
-            let is_cap = feature.num_vertices == 4 && is_round(of.shape_type());
+            // Caps of these are discs.
+            let is_round = matches!(core, TypedShape::Cylinder(_) | TypedShape::Cone(_));
+            let is_cap = feature.num_vertices == 4 && is_round;
             return (feature, is_cap);
         }
         ConvexShape::Ball(_) | ConvexShape::HalfSpace(_) => {}
     }
     (feature, false)
-}
-
-/// True for shapes whose caps are discs.
-fn is_round(shape: ShapeType) -> bool {
-    use ShapeType::{Cone, Cylinder, RoundCone, RoundCylinder};
-    matches!(shape, Cone | Cylinder | RoundCone | RoundCylinder)
 }
 
 /// Returns the face of a polyhedron that faces a direction, and true if it has more corners than those returned. Up to four corners

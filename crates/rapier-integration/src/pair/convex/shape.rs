@@ -5,8 +5,7 @@ use std::sync::OnceLock;
 use glamx::{DVec3, Vec3, Vec3Swizzles};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{
-    Ball, ConvexPolyhedron, Cuboid, HalfSpace, PolygonalFeatureMap, Segment, Shape, ShapeType,
-    Triangle, TypedShape,
+    Ball, ConvexPolyhedron, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType, TypedShape,
 };
 use sbbk_core::contact::convex::HullPoints;
 use sbbk_core::volumes::Sphere;
@@ -21,7 +20,8 @@ pub(crate) enum ConvexShape<'a> {
     Cuboid(&'a Cuboid),
     /// A shape with polygonal features and a rounding radius.
     Features {
-        shape: &'a dyn Shape,
+        /// The shape without its radius.
+        core: TypedShape<'a>,
         map: &'a dyn PolygonalFeatureMap,
         radius: Real,
     },
@@ -30,26 +30,25 @@ pub(crate) enum ConvexShape<'a> {
 impl<'a> ConvexShape<'a> {
     /// Returns `None` for all other kinds of shapes.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
-        Some(match shape.shape_type() {
-            ShapeType::Ball => Self::Ball(shape.as_ball()?),
-            ShapeType::HalfSpace => Self::HalfSpace(shape.as_halfspace()?),
-            ShapeType::Cuboid => Self::Cuboid(shape.as_cuboid()?),
-            ShapeType::Capsule
-            | ShapeType::Segment
-            | ShapeType::Triangle
-            | ShapeType::ConvexPolyhedron
-            | ShapeType::Cylinder
-            | ShapeType::Cone
-            | ShapeType::RoundCuboid
-            | ShapeType::RoundTriangle
-            | ShapeType::RoundCylinder
-            | ShapeType::RoundCone
-            | ShapeType::RoundConvexPolyhedron => {
-                let (map, radius) = shape.as_polygonal_feature_map()?;
-                Self::Features { shape, map, radius }
-            }
+        let core = match shape.as_typed_shape() {
+            TypedShape::Ball(ball) => return Some(Self::Ball(ball)),
+            TypedShape::HalfSpace(half_space) => return Some(Self::HalfSpace(half_space)),
+            TypedShape::Cuboid(cuboid) => return Some(Self::Cuboid(cuboid)),
+            TypedShape::Capsule(it) => TypedShape::Segment(&it.segment),
+            TypedShape::RoundTriangle(it) => TypedShape::Triangle(&it.inner_shape),
+            TypedShape::RoundCuboid(it) => TypedShape::Cuboid(&it.inner_shape),
+            TypedShape::RoundCylinder(it) => TypedShape::Cylinder(&it.inner_shape),
+            TypedShape::RoundCone(it) => TypedShape::Cone(&it.inner_shape),
+            TypedShape::RoundConvexPolyhedron(it) => TypedShape::ConvexPolyhedron(&it.inner_shape),
+            core @ (TypedShape::Segment(_)
+            | TypedShape::Triangle(_)
+            | TypedShape::Cylinder(_)
+            | TypedShape::Cone(_)
+            | TypedShape::ConvexPolyhedron(_)) => core,
             _ => return None,
-        })
+        };
+        let (map, radius) = shape.as_polygonal_feature_map()?;
+        Some(Self::Features { core, map, radius })
     }
 }
 
@@ -65,42 +64,30 @@ impl ConvexShape<'_> {
 
     /// Returns the polyhedron of a shape, with or without a rounding radius.
     pub(super) fn polyhedron(&self) -> Option<&ConvexPolyhedron> {
-        let Self::Features { shape, .. } = self else { return None };
-        let round = || shape.as_round_convex_polyhedron().map(|shape| &shape.inner_shape);
-        shape.as_convex_polyhedron().or_else(round)
+        match self {
+            Self::Features { core: TypedShape::ConvexPolyhedron(hull), .. } => Some(hull),
+            _ => None,
+        }
     }
 
     /// Returns the kind and the numbers that define the shape. Polyhedra have more numbers than these.
     pub(super) fn parameters(&self) -> (ShapeType, Real, [Vec3; 3]) {
         let one = |vector| [vector, Vec3::ZERO, Vec3::ZERO];
         let round = |half_height, radius| one(Vec3::new(half_height, radius, 0.0));
-        let segment = |it: &Segment| [it.a, it.b, Vec3::ZERO];
-        let triangle = |it: &Triangle| [it.a, it.b, it.c];
-        let (shape_type, numbers) = match *self {
+        let (kind, numbers) = match *self {
             Self::Ball(_) => (ShapeType::Ball, one(Vec3::ZERO)),
             Self::HalfSpace(half_space) => (ShapeType::HalfSpace, one(half_space.normal)),
             Self::Cuboid(cuboid) => (ShapeType::Cuboid, one(cuboid.half_extents)),
-            Self::Features { shape, .. } => {
-                let numbers = match shape.as_typed_shape() {
-                    TypedShape::Segment(it) => segment(it),
-                    TypedShape::Capsule(it) => segment(&it.segment),
-                    TypedShape::Triangle(it) => triangle(it),
-                    TypedShape::RoundTriangle(it) => triangle(&it.inner_shape),
-                    TypedShape::Cylinder(it) => round(it.half_height, it.radius),
-                    TypedShape::RoundCylinder(it) => {
-                        round(it.inner_shape.half_height, it.inner_shape.radius)
-                    }
-                    TypedShape::Cone(it) => round(it.half_height, it.radius),
-                    TypedShape::RoundCone(it) => {
-                        round(it.inner_shape.half_height, it.inner_shape.radius)
-                    }
-                    TypedShape::RoundCuboid(it) => one(it.inner_shape.half_extents),
-                    _ => one(Vec3::ZERO),
-                };
-                (shape.shape_type(), numbers)
-            }
+            Self::Features { core, .. } => match core {
+                TypedShape::Segment(it) => (ShapeType::Segment, [it.a, it.b, Vec3::ZERO]),
+                TypedShape::Triangle(it) => (ShapeType::Triangle, [it.a, it.b, it.c]),
+                TypedShape::Cuboid(it) => (ShapeType::RoundCuboid, one(it.half_extents)),
+                TypedShape::Cylinder(it) => (ShapeType::Cylinder, round(it.half_height, it.radius)),
+                TypedShape::Cone(it) => (ShapeType::Cone, round(it.half_height, it.radius)),
+                _ => (ShapeType::ConvexPolyhedron, one(Vec3::ZERO)),
+            },
         };
-        (shape_type, self.radius(), numbers)
+        (kind, self.radius(), numbers)
     }
 
     /// Returns a point within the shape; `None` for a half-space.
