@@ -7,11 +7,11 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::{CompositeShape, ConvexPolyhedron, Shape, ShapeType};
+use parry3d::shape::{CompositeShape, Shape, ShapeType};
 use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
-use super::shape::{ConvexShape, Extent, KeptHull, ball_around};
+use super::shape::{ConvexShape, Extent, KeptHull, ShapeToken, ball_around};
 use crate::mesh::box_of;
 use crate::pair::pose::MeshPlace;
 
@@ -20,7 +20,7 @@ use crate::pair::pose::MeshPlace;
 pub(crate) enum Parts<'a> {
     One(ConvexShape<'a>),
     /// A compound or a polyline.
-    Many(&'a dyn CompositeShape, ListToken),
+    Many(&'a dyn CompositeShape, ShapeToken),
 }
 
 /// A part of a shape.
@@ -32,41 +32,19 @@ pub(super) struct Part<'p> {
     pub(super) cone: Option<&'p dyn NormalConstraints>,
 }
 
-/// Identifies a list of points or parts in constant time. Hosts drop the workspace when they replace or
-/// edit a shape; the token notices the shapes of hosts that do not.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub(crate) struct ListToken {
-    address: usize,
-    count: usize,
-    flags: u32,
-    /// Corners of the box around the parts, or first and last point.
-    ends: [Vec3; 2],
-    radius: Real,
-}
-
-#[derive(Copy, Clone, Debug, PartialEq)]
-enum Token {
-    Small((ShapeType, Real, [Vec3; 3])),
-    List(ListToken),
-}
-
 impl<'a> Parts<'a> {
     /// Returns `None` for shapes that only Parry supports. Does not look at the [parts](Self::are_supported) of compounds.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
-        let shape_type = shape.shape_type();
-        if shape_type == ShapeType::Compound
-            && let Some(compound) = shape.as_compound()
-        {
-            let parts = compound.shapes();
-            let flags = u32::from(compound.flags().bits());
-            let token = ListToken::of_parts(parts, flags, compound.local_aabb());
+        if let Some(compound) = shape.as_compound() {
+            let (flags, aabb) = (u32::from(compound.flags().bits()), compound.local_aabb());
+            let (kind, ends) = (ShapeType::Compound, [aabb.mins, aabb.maxs]);
+            let token = ShapeToken::of_list(kind, compound.shapes(), flags, ends);
             return Some(Self::Many(compound, token));
         }
-        if shape_type == ShapeType::Polyline
-            && let Some(polyline) = shape.as_polyline()
-        {
-            let flags = u32::from(polyline.flags().bits());
-            let token = ListToken::of_parts(polyline.indices(), flags, &polyline.bvh().root_aabb());
+        if let Some(polyline) = shape.as_polyline() {
+            let (flags, aabb) = (u32::from(polyline.flags().bits()), polyline.bvh().root_aabb());
+            let (kind, ends) = (ShapeType::Polyline, [aabb.mins, aabb.maxs]);
+            let token = ShapeToken::of_list(kind, polyline.indices(), flags, ends);
             return (!polyline.is_deformable()).then_some(Self::Many(polyline, token));
         }
         ConvexShape::of(shape).map(Self::One)
@@ -115,36 +93,10 @@ impl<'a> Parts<'a> {
     }
 }
 
-impl ListToken {
-    fn of_parts<T>(list: &[T], flags: u32, aabb: &Aabb) -> Self {
-        let (address, count) = (list.as_ptr().addr(), list.len());
-        Self { address, count, flags, ends: [aabb.mins, aabb.maxs], radius: 0.0 }
-    }
-
-    fn of_hull(hull: &ConvexPolyhedron, radius: Real) -> Self {
-        let points = hull.points();
-        let (address, count) = (points.as_ptr().addr(), points.len());
-        let ends = [points.first(), points.last()].map(|end| end.copied().unwrap_or_default());
-        Self { address, count, flags: 0, ends, radius }
-    }
-}
-
-impl Token {
-    fn of(parts: &Parts<'_>) -> Self {
-        match *parts {
-            Parts::Many(_, token) => Self::List(token),
-            Parts::One(shape) => match shape.polyhedron() {
-                Some(hull) => Self::List(ListToken::of_hull(hull, shape.radius())),
-                None => Self::Small(shape.parameters()),
-            },
-        }
-    }
-}
-
 /// Data of the parts, kept from query to query. A single shape has index 0.
 #[derive(Clone, Debug)]
 pub(crate) struct PartData {
-    token: Option<Token>,
+    token: Option<ShapeToken>,
     /// Points of polyhedra, computed at first use.
     hulls: Vec<KeptHull>,
     /// Computed at first use: all at once take a fifth of the first query of 24 parts.
@@ -168,7 +120,10 @@ impl Default for PartData {
 impl PartData {
     /// Updates the data to the current parts. Returns true if they replace others.
     pub(super) fn update(&mut self, parts: &Parts<'_>) -> bool {
-        let token = Token::of(parts);
+        let token = match parts {
+            Parts::One(shape) => shape.token(),
+            Parts::Many(_, token) => *token,
+        };
         if self.token == Some(token) {
             return false;
         }
@@ -181,7 +136,7 @@ impl PartData {
                 self.hulls = vec![KeptHull::with_faces()];
                 self.extents = vec![OnceLock::from(extent)];
             }
-            Parts::Many(_, ListToken { count, ends: [min, max], .. }) => {
+            Parts::Many(_, ShapeToken { list: (_, count), numbers: [min, max, _], .. }) => {
                 self.ball = ball_around(min, max);
                 self.hulls = vec![KeptHull::with_faces(); count];
                 self.extents = vec![OnceLock::new(); count];

@@ -70,24 +70,30 @@ impl ConvexShape<'_> {
         }
     }
 
-    /// Returns the kind and the numbers that define the shape. Polyhedra have more numbers than these.
-    pub(super) fn parameters(&self) -> (ShapeType, Real, [Vec3; 3]) {
+    pub(super) fn token(&self) -> ShapeToken {
         let one = |vector| [vector, Vec3::ZERO, Vec3::ZERO];
         let round = |half_height, radius| one(Vec3::new(half_height, radius, 0.0));
         let (kind, numbers) = match *self {
             Self::Ball(_) => (ShapeType::Ball, one(Vec3::ZERO)),
             Self::HalfSpace(half_space) => (ShapeType::HalfSpace, one(half_space.normal)),
             Self::Cuboid(cuboid) => (ShapeType::Cuboid, one(cuboid.half_extents)),
-            Self::Features { core, .. } => match core {
+            Self::Features { core, radius, .. } => match core {
                 TypedShape::Segment(it) => (ShapeType::Segment, [it.a, it.b, Vec3::ZERO]),
                 TypedShape::Triangle(it) => (ShapeType::Triangle, [it.a, it.b, it.c]),
                 TypedShape::Cuboid(it) => (ShapeType::RoundCuboid, one(it.half_extents)),
                 TypedShape::Cylinder(it) => (ShapeType::Cylinder, round(it.half_height, it.radius)),
                 TypedShape::Cone(it) => (ShapeType::Cone, round(it.half_height, it.radius)),
-                _ => (ShapeType::ConvexPolyhedron, one(Vec3::ZERO)),
+                TypedShape::ConvexPolyhedron(hull) => {
+                    let points = hull.points();
+                    let [a, b] =
+                        [points.first(), points.last()].map(|end| end.copied().unwrap_or_default());
+                    let token = ShapeToken::of_list(ShapeType::ConvexPolyhedron, points, 0, [a, b]);
+                    return ShapeToken { radius, ..token };
+                }
+                _ => (ShapeType::Custom, one(Vec3::ZERO)),
             },
         };
-        (kind, self.radius(), numbers)
+        ShapeToken { kind, list: (0, 0), flags: 0, numbers, radius: self.radius() }
     }
 
     /// Returns a point within the shape; `None` for a half-space.
@@ -104,6 +110,26 @@ impl ConvexShape<'_> {
                 Some(ends.into_iter().sum::<DVec3>() / 6.0)
             }
         }
+    }
+}
+
+/// Identifies a shape in constant time. Hosts drop the workspace when they replace or edit a shape; the token
+/// notices the shapes of hosts that do not.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub(crate) struct ShapeToken {
+    kind: ShapeType,
+    /// Address and length of a list of points or parts.
+    pub(super) list: (usize, usize),
+    flags: u32,
+    /// Numbers that define the shape, corners of the box around the parts, or first and last point.
+    pub(super) numbers: [Vec3; 3],
+    radius: Real,
+}
+
+impl ShapeToken {
+    pub(super) fn of_list<T>(kind: ShapeType, list: &[T], flags: u32, [a, b]: [Vec3; 2]) -> Self {
+        let list = (list.as_ptr().addr(), list.len());
+        Self { kind, list, flags, numbers: [a, b, Vec3::ZERO], radius: 0.0 }
     }
 }
 
