@@ -3,7 +3,7 @@ use glamx::Vec3;
 use super::rounding::gamma;
 
 /// A sphere, filled.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Sphere {
     /// The centre.
     pub centre: Vec3,

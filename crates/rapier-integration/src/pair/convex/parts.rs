@@ -94,7 +94,7 @@ impl<'a> Parts<'a> {
 }
 
 /// Data of the parts, kept from query to query. A single shape has index 0.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct PartData {
     token: Option<ShapeToken>,
     /// Points of polyhedra, computed at first use.
@@ -107,14 +107,6 @@ pub(crate) struct PartData {
     pub(super) magnitude: Real,
     /// Size of the largest part, with its distance from the origin of the whole.
     size: OnceLock<Real>,
-}
-
-impl Default for PartData {
-    fn default() -> Self {
-        let ball = Sphere { centre: Vec3::ZERO, radius: Real::INFINITY };
-        let (hulls, extents, size) = (Vec::new(), Vec::new(), OnceLock::new());
-        Self { token: None, hulls, extents, ball, magnitude: 0.0, size }
-    }
 }
 
 impl PartData {
