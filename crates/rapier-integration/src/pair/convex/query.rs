@@ -141,14 +141,13 @@ impl ConvexQuery<'_> {
         if parts.len() <= slot {
             parts.resize_with(slot + 1, || None);
         }
-        let is_known = parts[slot].as_ref().is_some_and(|placed| placed.index == index);
-        if !is_known {
+        parts[slot].take_if(|placed| placed.index != index);
+        parts[slot].get_or_insert_with(|| {
             let placements = self.pair.mesh_place.placements(self.pair.pose);
             let extent = self.part_data.extent(index, part);
-            let placed = parts[slot].insert(PlacedPart::new(index, part, placements, extent));
-            placed.has_mesh_axes = matches!(part.shape, ConvexShape::Ball(_));
-        }
-        parts[slot].as_ref().expect("the part was placed just now")
+            let has_mesh_axes = matches!(part.shape, ConvexShape::Ball(_));
+            PlacedPart { has_mesh_axes, ..PlacedPart::new(index, part, placements, extent) }
+        })
     }
 }
 
@@ -379,7 +378,7 @@ impl ConvexQuery<'_> {
     ) -> Option<PartContact> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
         let (mesh, part_data) = (&self.pair.mesh, self.part_data);
-        let contact = self.pair.parts.with(part, |part_shape| {
+        self.pair.parts.with(part, |part_shape| {
             let shape = part_shape.shape;
             let placed = self.placed(part, &part_shape, scratch);
             let radius = f64::from(shape.radius());
@@ -390,7 +389,6 @@ impl ConvexQuery<'_> {
             candidate.touches_at = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);
             contact.filter(|_| is_near).map(|contact| PartContact::new(contact, &corners))
-        });
-        contact.flatten()
+        })?
     }
 }
