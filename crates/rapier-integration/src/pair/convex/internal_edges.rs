@@ -119,10 +119,7 @@ impl ConvexQuery<'_> {
         let GhostContacts { borders, sources, upright, .. } = ghosts;
         for &index in borders.iter().filter(|&&i| sources[i as usize] == i) {
             let (of, hit) = &contacts[index as usize];
-            let of_face = self.with_pair(*of, scratch, |pair| {
-                let contact = pair.upright_at_border(&hit.contact)?;
-                Some((contact, pair.is_past_border(&hit.contact, contact.normal)))
-            });
+            let of_face = self.with_pair(*of, scratch, |pair| pair.upright_at_border(&hit.contact));
             if let Some((contact, is_past)) = of_face.flatten()
                 && self.is_border(*of, hit, scratch)
             {

@@ -259,8 +259,11 @@ impl TrianglePartPair<'_> {
     }
 
     /// Returns a contact at a border with the normal of the face, if the part is on one side of the
-    /// plane of the triangle.
-    pub(super) fn upright_at_border(&self, contact: &ConvexContact) -> Option<ConvexContact> {
+    /// plane of the triangle. True if the way along this normal leads past the border.
+    pub(super) fn upright_at_border(
+        &self,
+        contact: &ConvexContact,
+    ) -> Option<(ConvexContact, bool)> {
         let ConvexContact { distance, normal: own, on_shape, .. } = *contact;
         let face = self.face_contact(&self.placed.in_part(self.corners))?;
         let radius = self.radius();
@@ -268,16 +271,13 @@ impl TrianglePartPair<'_> {
             return None;
         }
         let normal = face.normal;
+        let (to_border, cosine) = (distance - radius, normal.dot(own));
         // Measures the way between the nearest points along the normal of the face.
-        let distance = radius + (distance - radius) * normal.dot(own).max(0.0);
+        let distance = radius + to_border * cosine.max(0.0);
         // Under the part: a part that rolls would seem to come down on a point ahead.
         let on_triangle = on_shape - distance * normal;
-        Some(ConvexContact { distance, normal, on_triangle, on_shape })
-    }
-
-    /// Returns true if the way along the normal of a face leads past its border, where a contact is.
-    pub(super) fn is_past_border(&self, contact: &ConvexContact, face: DVec3) -> bool {
-        is_past_border(contact.distance - self.radius(), contact.normal.dot(face))
+        let upright = ConvexContact { distance, normal, on_triangle, on_shape };
+        Some((upright, is_past_border(to_border, cosine)))
     }
 
     /// Returns the rounding radius of the part.
