@@ -29,10 +29,10 @@ impl ConvexQuery<'_> {
         let ConvexPair { mesh, mesh_place, pose, .. } = self.pair;
         let (normal, prediction) = (half_space.normal.as_dvec3(), f64::from(pose.prediction));
         let vertices = |of: [u32; 2]| mesh.mesh.indices()[mesh_place.swap(of)[0] as usize];
-        let mut is_known = std::mem::take(&mut scratch.is_vertex_known);
+        let ConvexScratch { at_hand, is_vertex_known: is_known, .. } = scratch;
         is_known.resize(mesh.mesh.vertices().len().max(is_known.len()), false);
         let part = Part { pose: None, shape: ConvexShape::HalfSpace(half_space), cone: None };
-        let placed = self.placed(0, &part, scratch);
+        let placed = self.placed(0, &part, at_hand);
         for candidate in candidates.iter_mut().filter(|candidate| limits.may_touch(candidate)) {
             let of = candidate.subshapes;
             let corners = placed.in_part(mesh.corners(mesh_place.swap(of)[0]));
@@ -57,7 +57,6 @@ impl ConvexQuery<'_> {
         for vertex in contacts.iter().flat_map(|(of, _)| vertices(*of)) {
             is_known[vertex as usize] = false;
         }
-        scratch.is_vertex_known = is_known;
     }
 }
 

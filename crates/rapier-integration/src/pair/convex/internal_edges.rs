@@ -11,7 +11,7 @@ use sbbk_core::surface::{Around, Side, SurfaceKind};
 
 use super::contact::{Hit, NormalSource, PartContact};
 use super::ghosts::{GhostContacts, UprightContact, corner_key};
-use super::query::{ConvexQuery, ConvexScratch};
+use super::query::{ConvexQuery, PlacedParts};
 use crate::mesh::box_between;
 use crate::pair::borders::lead_one_way;
 
@@ -55,19 +55,23 @@ impl ConvexQuery<'_> {
     }
 
     /// Replaces the normals of ghost contacts and of contacts at borders.
-    pub(super) fn correct_ghosts(&self, contacts: &mut [Hit], scratch: &mut ConvexScratch) {
+    pub(super) fn correct_ghosts(
+        &self,
+        contacts: &mut [Hit],
+        at_hand: &mut PlacedParts,
+        ghosts: &mut GhostContacts,
+    ) {
         let is_at_border = |(_, contact): &Hit| contact.feature != Feature::Face;
-        scratch.ghosts.upright.clear();
+        ghosts.upright.clear();
         if !self.pair.has_surface() || !contacts.iter().any(is_at_border) {
             return;
         }
-        let mut ghosts = std::mem::take(&mut scratch.ghosts);
-        self.find_ghosts(&mut ghosts, contacts, scratch);
+        self.find_ghosts(ghosts, contacts, at_hand);
         for &(index, wall) in &ghosts.walls {
             contacts[index as usize].1.contact = wall;
         }
-        self.turn_to_faces(&mut ghosts, contacts, scratch);
-        self.turn_at_borders(&mut ghosts, contacts, scratch);
+        self.turn_to_faces(ghosts, contacts, at_hand);
+        self.turn_at_borders(ghosts, contacts, at_hand);
         for (contact, &source) in ghosts.sources.iter().enumerate() {
             let source = contacts[source as usize].1.contact;
             // Along its own normal a contact keeps its own points.
@@ -75,27 +79,21 @@ impl ConvexQuery<'_> {
                 contacts[contact].1 = contacts[contact].1.with_normal_of(&source);
             }
         }
-        scratch.ghosts = ghosts;
     }
 
-    fn find_ghosts(
-        &self,
-        ghosts: &mut GhostContacts,
-        contacts: &[Hit],
-        scratch: &mut ConvexScratch,
-    ) {
+    fn find_ghosts(&self, ghosts: &mut GhostContacts, contacts: &[Hit], at_hand: &mut PlacedParts) {
         let keys = |of: [u32; 2]| {
             let [triangle, part] = self.pair.mesh_place.swap(of);
             self.pair.mesh.corners(triangle).map(|corner| corner_key(part, corner))
         };
-        let scratch_of = RefCell::new(scratch);
+        let at_hand_of = RefCell::new(at_hand);
         let extends_beyond = |of: [u32; 2], contact: &ConvexContact| {
-            let scratch = &mut scratch_of.borrow_mut();
-            self.with_pair(of, scratch, |pair| pair.extends_beyond(contact)).unwrap_or(false)
+            let at_hand = &mut at_hand_of.borrow_mut();
+            self.with_pair(of, at_hand, |pair| pair.extends_beyond(contact)).unwrap_or(false)
         };
         let find_strays = |(of, hit): &Hit, strays: &mut Vec<u32>| {
-            let scratch = &mut scratch_of.borrow_mut();
-            let place = self.with_pair(*of, scratch, |pair| pair.touched_place(&hit.contact));
+            let at_hand = &mut at_hand_of.borrow_mut();
+            let place = self.with_pair(*of, at_hand, |pair| pair.touched_place(&hit.contact));
             if let Some((place, seam)) = place.flatten() {
                 self.strays_at(contacts, *of, place, seam, |stray| strays.push(stray));
             }
@@ -103,8 +101,8 @@ impl ConvexQuery<'_> {
         let find_wall = |of: [u32; 2], (of_floor, floor): &Hit| {
             let [floor_triangle, _] = self.pair.mesh_place.swap(*of_floor);
             let of_floor = self.pair.mesh.corners(floor_triangle);
-            let scratch = &mut scratch_of.borrow_mut();
-            self.with_pair(of, scratch, |pair| pair.wall_contact(&floor.contact, of_floor))?
+            let at_hand = &mut at_hand_of.borrow_mut();
+            self.with_pair(of, at_hand, |pair| pair.wall_contact(&floor.contact, of_floor))?
         };
         ghosts.find(contacts, keys, extends_beyond, find_strays, find_wall);
     }
@@ -114,16 +112,16 @@ impl ConvexQuery<'_> {
         &self,
         ghosts: &mut GhostContacts,
         contacts: &mut [Hit],
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) {
         let GhostContacts { borders, sources, upright, .. } = ghosts;
         for &index in borders.iter().filter(|&&i| sources[i as usize] == i) {
             let (of, hit) = &contacts[index as usize];
-            let of_face = self.with_pair(*of, scratch, |pair| pair.upright_at_border(&hit.contact));
+            let of_face = self.with_pair(*of, at_hand, |pair| pair.upright_at_border(&hit.contact));
             if let Some((contact, is_past)) = of_face.flatten()
-                && self.is_border(*of, hit, scratch)
+                && self.is_border(*of, hit, at_hand)
             {
-                let shared_normal = self.shared_normal(*of, &contact, scratch);
+                let shared_normal = self.shared_normal(*of, &contact, at_hand);
                 upright.push(UprightContact { index, contact, shared_normal, is_past });
             }
         }
@@ -138,10 +136,10 @@ impl ConvexQuery<'_> {
 
     /// Returns true if the mesh ends at the feature of a contact, at which no other triangle has its edge. The other part of
     /// a T-junction may go on there.
-    fn is_border(&self, of: [u32; 2], hit: &PartContact, scratch: &mut ConvexScratch) -> bool {
+    fn is_border(&self, of: [u32; 2], hit: &PartContact, at_hand: &mut PlacedParts) -> bool {
         let Some(surface) = &self.surface else { return true };
         let [triangle, _] = self.pair.mesh_place.swap(of);
-        let place = self.with_pair(of, scratch, |pair| pair.touched_place(&hit.contact)).flatten();
+        let place = self.with_pair(of, at_hand, |pair| pair.touched_place(&hit.contact)).flatten();
         let around = Around { facets: surface.facets(), side: Side::Sheet };
         place.is_none_or(|(place, _)| around.is_border(triangle, hit.feature, place.as_dvec3()))
     }
@@ -151,7 +149,7 @@ impl ConvexQuery<'_> {
         &self,
         ghosts: &mut GhostContacts,
         contacts: &mut [Hit],
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) {
         for i in 0..ghosts.exceeded.len() {
             let exceeded = ghosts.exceeded[i];
@@ -161,7 +159,7 @@ impl ConvexQuery<'_> {
             let is_crossing = |&other: &u32| contacts[other as usize].1.contact.distance < 0.0;
             let face = ghosts.nearby.iter().copied().filter(is_crossing).find_map(|other| {
                 let of = contacts[other as usize].0;
-                self.with_pair(of, scratch, |pair| pair.face_contact_for(&own.contact))?
+                self.with_pair(of, at_hand, |pair| pair.face_contact_for(&own.contact))?
             });
             let Some(face) = face.map(|face| own.with_normal_of(&face)) else { continue };
             if contacts.len() <= LINEAR_SEARCH {
@@ -172,7 +170,7 @@ impl ConvexQuery<'_> {
                 ghosts.nearby.extend(all.filter(is_of_part).filter(is_crossing));
             }
             contacts[exceeded as usize].1 =
-                self.least_deep(ghosts, contacts, exceeded, face, scratch);
+                self.least_deep(ghosts, contacts, exceeded, face, at_hand);
         }
     }
 
@@ -183,14 +181,14 @@ impl ConvexQuery<'_> {
         contacts: &[Hit],
         exceeded: u32,
         face: PartContact,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) -> PartContact {
         let (of, own) = contacts[exceeded as usize];
         let [_, part] = self.pair.mesh_place.swap(of);
         let hull = self.part_data.hull(part);
         let is_solid =
             || self.surface.as_ref().is_some_and(|known| known.kind() == SurfaceKind::Solid);
-        let least = self.with_pair(of, scratch, |pair| {
+        let least = self.with_pair(of, at_hand, |pair| {
             let wedge = |&other: &u32| {
                 let [triangle, _] = self.pair.mesh_place.swap(contacts[other as usize].0);
                 let contact = pair.contact_of_wedge(self.pair.mesh.corners(triangle), hull)?;

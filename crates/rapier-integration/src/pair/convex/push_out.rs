@@ -12,7 +12,7 @@ use sbbk_core::surface::{SurfaceKind, area_vector};
 
 use super::contact::{Hit, NormalSource, PartContact};
 use super::pair::ConvexPair;
-use super::query::{ConvexQuery, ConvexScratch};
+use super::query::{ConvexQuery, ConvexScratch, PlacedParts};
 use crate::mesh::{BEHIND, LazySurface, is_covered};
 use crate::pair::query::ContactList;
 
@@ -27,13 +27,13 @@ impl<'q> ConvexQuery<'q> {
         &self,
         part: u32,
         deepest: f64,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) -> Option<(u32, PartContact)> {
         let surface = self.left_surface()?;
         let mesh = self.pair.mesh.mesh;
         self.pair.parts.with(part, |shape| {
             let middle = shape.shape.middle()?;
-            let placed = self.placed(part, &shape, scratch);
+            let placed = self.placed(part, &shape, at_hand);
             let from = placed.in_mesh(middle);
             let (radius, border) = (placed.extent.ball().radius, shape.shape.radius());
             let is_deep = deepest - f64::from(border) < -DEEP * f64::from(radius);
@@ -77,7 +77,7 @@ impl<'q> ConvexQuery<'q> {
         }
         let ConvexPair { parts, mesh_place, .. } = self.pair;
         let part_of = |(of, _): &Hit| mesh_place.swap(*of)[1];
-        let (mut depths, mut pushed) = std::mem::take(&mut scratch.push_outs);
+        let ConvexScratch { at_hand, push_outs: (depths, pushed), .. } = scratch;
         depths.extend(contacts.iter().map(|hit| (part_of(hit), hit.1.contact.distance)));
         depths.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let anywhere = |_| true;
@@ -85,15 +85,14 @@ impl<'q> ConvexQuery<'q> {
             let first = depths.get(depths.partition_point(|(of, _)| *of < part));
             let own = first.filter(|(of, _)| *of == part);
             let deepest = own.map_or(f64::INFINITY, |(_, distance)| *distance);
-            let push_out = self.push_out(part, deepest, scratch);
+            let push_out = self.push_out(part, deepest, at_hand);
             let named = |(triangle, contact)| (mesh_place.swap([triangle, part]), contact);
             pushed.extend(push_out.map(named));
         });
         pushed.sort_unstable_by_key(part_of);
         contacts.retain(|hit| pushed.binary_search_by_key(&part_of(hit), part_of).is_err());
-        contacts.append(&mut pushed);
+        contacts.append(pushed);
         depths.clear();
-        scratch.push_outs = (depths, pushed);
         contacts.sort_unstable_by_key(|(subshapes, _)| *subshapes);
     }
 }

@@ -61,8 +61,7 @@ pub(crate) struct ConvexQuery<'q> {
 /// Memory for queries.
 #[derive(Default)]
 pub(crate) struct ConvexScratch {
-    /// Parts at the pose of the query.
-    parts: Vec<Option<PlacedPart>>,
+    pub(super) at_hand: PlacedParts,
     pub(super) ghosts: GhostContacts,
     pub(super) dropped: DroppedContacts,
     /// Parts with the distances of their contacts, and push-outs.
@@ -71,10 +70,13 @@ pub(crate) struct ConvexScratch {
     pub(super) is_vertex_known: Vec<bool>,
 }
 
+/// Parts at the pose of the query.
+pub(super) type PlacedParts = Vec<Option<PlacedPart>>;
+
 /// Memory for the search for [walls](super::walls).
 #[derive(Default)]
 pub(super) struct DroppedContacts {
-    /// True for each contact that is removed. Empty if none is.
+    /// True for each contact that is removed.
     pub(super) removed: Vec<bool>,
     /// Contacts apart, the nearest first.
     pub(super) apart: Vec<usize>,
@@ -83,18 +85,10 @@ pub(super) struct DroppedContacts {
 }
 
 impl DroppedContacts {
-    /// Marks one of `count` contacts.
-    pub(super) fn mark(&mut self, index: usize, count: usize) {
-        self.removed.resize(count, false);
-        self.removed[index] = true;
-    }
-
     /// Removes the marked contacts.
     pub(super) fn remove_from(&self, contacts: &mut ContactList<PartContact>) {
-        if !self.removed.is_empty() {
-            let mut removed = self.removed.iter();
-            contacts.retain(|_| removed.next() != Some(&true));
-        }
+        let mut removed = self.removed.iter();
+        contacts.retain(|_| removed.next() != Some(&true));
     }
 }
 
@@ -108,7 +102,7 @@ impl ConvexQuery<'_> {
     pub(super) fn with_pair<T>(
         &self,
         subshapes: [u32; 2],
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
         then: impl FnOnce(TrianglePartPair<'_>) -> T,
     ) -> Option<T> {
         let ConvexPair { mesh, parts, mesh_place, .. } = self.pair;
@@ -121,7 +115,7 @@ impl ConvexQuery<'_> {
         let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
         let corners = mesh.corners(triangle);
         parts.with(part, |shape| {
-            let placed = self.placed(part, &shape, scratch);
+            let placed = self.placed(part, &shape, at_hand);
             then(TrianglePartPair { pair: self.pair, placed, part: &shape, corners, cone })
         })
     }
@@ -132,17 +126,16 @@ impl ConvexQuery<'_> {
         &self,
         index: u32,
         part: &Part<'_>,
-        scratch: &'s mut ConvexScratch,
+        at_hand: &'s mut PlacedParts,
     ) -> &'s PlacedPart {
         /// Parts kept at a time. Higher: more memory; lower: parts of large compounds are placed again.
         const AT_HAND: usize = 64;
-        let parts = &mut scratch.parts;
         let slot = index as usize % AT_HAND;
-        if parts.len() <= slot {
-            parts.resize_with(slot + 1, || None);
+        if at_hand.len() <= slot {
+            at_hand.resize_with(slot + 1, || None);
         }
-        parts[slot].take_if(|placed| placed.index != index);
-        parts[slot].get_or_insert_with(|| {
+        at_hand[slot].take_if(|placed| placed.index != index);
+        at_hand[slot].get_or_insert_with(|| {
             let placements = self.pair.mesh_place.placements(self.pair.pose);
             let extent = self.part_data.extent(index, part);
             let has_mesh_axes = matches!(part.shape, ConvexShape::Ball(_));
@@ -187,7 +180,7 @@ impl PairQuery for ConvexQuery<'_> {
     }
 
     fn begin(&self, scratch: &mut ConvexScratch) {
-        scratch.parts.clear();
+        scratch.at_hand.clear();
     }
 
     /// Serves balls, whose contacts cost less than a list of candidates.
@@ -199,7 +192,8 @@ impl PairQuery for ConvexQuery<'_> {
         contacts: &mut ContactList<PartContact>,
     ) -> bool {
         let Parts::One(shape @ ConvexShape::Ball(ball)) = self.pair.parts else { return false };
-        let placed = self.placed(0, &Part { pose: None, shape, cone: None }, scratch);
+        let part = Part { pose: None, shape, cone: None };
+        let placed = self.placed(0, &part, &mut scratch.at_hand);
         triangles_near(placed, shape, &self.pair.mesh, margin, counts, |triangle| {
             self.add_ball(triangle, ball, placed, margin.into(), contacts);
             ControlFlow::Continue(())
@@ -219,7 +213,7 @@ impl PairQuery for ConvexQuery<'_> {
         let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
         parts.intersecting(&self.pair.mesh_box(margin), self.near_mesh(margin), |index| {
             parts.with(index, |part| {
-                let placed = self.placed(index, &part, scratch);
+                let placed = self.placed(index, &part, &mut scratch.at_hand);
                 triangles_near(placed, part.shape, mesh, margin, &mut *counts, |triangle| {
                     found.push(Candidate::new(mesh_place.swap([triangle, index])));
                     ControlFlow::Continue(())
@@ -240,7 +234,8 @@ impl PairQuery for ConvexQuery<'_> {
             return;
         }
         if let Parts::One(shape @ ConvexShape::Ball(ball)) = self.pair.parts {
-            let placed = self.placed(0, &Part { pose: None, shape, cone: None }, scratch);
+            let part = Part { pose: None, shape, cone: None };
+            let placed = self.placed(0, &part, &mut scratch.at_hand);
             for candidate in candidates.iter_mut().filter(|it| limits.may_touch(it)) {
                 let [triangle, _] = self.pair.mesh_place.swap(candidate.subshapes);
                 let distance = self.add_ball(triangle, ball, placed, limits.margin, contacts);
@@ -251,12 +246,12 @@ impl PairQuery for ConvexQuery<'_> {
         }
         for candidate in candidates {
             if limits.may_touch(candidate)
-                && let Some(contact) = self.contact(candidate, limits, scratch)
+                && let Some(contact) = self.contact(candidate, limits, &mut scratch.at_hand)
             {
                 contacts.push((candidate.subshapes, contact));
             }
         }
-        self.drop_walls(contacts, scratch);
+        self.drop_walls(contacts, &mut scratch.at_hand, &mut scratch.dropped);
         self.add_push_outs(contacts, scratch);
         self.correct(contacts, scratch);
     }
@@ -277,7 +272,7 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
         points: &mut ContactPoints,
     ) -> Option<ContactSummary> {
-        self.with_pair(*subshapes, scratch, |pair| pair.summary(contact, points))?
+        self.with_pair(*subshapes, &mut scratch.at_hand, |pair| pair.summary(contact, points))?
     }
 
     #[inline(always)]
@@ -288,7 +283,7 @@ impl PairQuery for ConvexQuery<'_> {
         points: &mut ContactPoints,
     ) {
         points.points.clear();
-        self.with_pair(*subshapes, scratch, |pair| pair.write(contact, points));
+        self.with_pair(*subshapes, &mut scratch.at_hand, |pair| pair.write(contact, points));
     }
 }
 
@@ -320,7 +315,7 @@ impl ConvexQuery<'_> {
 
     /// Replaces the contacts of a ball by its push-out, if it has one, and corrects the rest.
     fn end_ball(&self, scratch: &mut ConvexScratch, contacts: &mut ContactList<PartContact>) {
-        if let Some((triangle, contact)) = self.push_out(0, f64::INFINITY, scratch) {
+        if let Some((triangle, contact)) = self.push_out(0, f64::INFINITY, &mut scratch.at_hand) {
             contacts.clear();
             contacts.push((self.pair.mesh_place.swap([triangle, 0]), contact));
         }
@@ -329,12 +324,13 @@ impl ConvexQuery<'_> {
 
     /// Corrects ghosts, and removes contacts that lead past a border or that one way lifts over.
     fn correct(&self, contacts: &mut ContactList<PartContact>, scratch: &mut ConvexScratch) {
-        scratch.dropped.removed.clear();
-        self.correct_ghosts(contacts, scratch);
-        self.find_lifted(contacts, scratch);
-        let ConvexScratch { ghosts, dropped, .. } = scratch;
+        let ConvexScratch { at_hand, ghosts, dropped, .. } = scratch;
+        dropped.removed.clear();
+        dropped.removed.resize(contacts.len(), false);
+        self.correct_ghosts(contacts, at_hand, ghosts);
+        self.find_lifted(contacts, at_hand, dropped);
         for upright in ghosts.upright.iter().filter(|upright| upright.is_past) {
-            dropped.mark(upright.index as usize, contacts.len());
+            dropped.removed[upright.index as usize] = true;
         }
         dropped.remove_from(contacts);
     }
@@ -344,14 +340,14 @@ impl ConvexQuery<'_> {
         &self,
         subshapes: [u32; 2],
         contact: &ConvexContact,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) -> DVec3 {
         let Parts::Many(..) = self.pair.parts else { return contact.normal };
         let [_, part] = self.pair.mesh_place.swap(subshapes);
         let turned = self
             .pair
             .parts
-            .with(part, |shape| self.placed(part, &shape, scratch).directions(contact.normal)[0]);
+            .with(part, |shape| self.placed(part, &shape, at_hand).directions(contact.normal)[0]);
         turned.unwrap_or(contact.normal)
     }
 
@@ -374,13 +370,13 @@ impl ConvexQuery<'_> {
         &self,
         candidate: &mut Candidate<()>,
         limits: Limits,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) -> Option<PartContact> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
         let (mesh, part_data) = (&self.pair.mesh, self.part_data);
         self.pair.parts.with(part, |part_shape| {
             let shape = part_shape.shape;
-            let placed = self.placed(part, &part_shape, scratch);
+            let placed = self.placed(part, &part_shape, at_hand);
             let radius = f64::from(shape.radius());
             let corners = placed.in_part(mesh.corners(triangle));
             let reach = limits.margin + radius;

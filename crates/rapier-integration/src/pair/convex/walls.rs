@@ -7,7 +7,7 @@ use sbbk_core::surface::{Side, SurfaceKind, area_vector};
 
 use super::contact::{Hit, NormalSource, PartContact, SAME_PUSH};
 use super::points::contact_points;
-use super::query::{ConvexQuery, ConvexScratch};
+use super::query::{ConvexQuery, DroppedContacts, PlacedParts};
 use crate::mesh::{LazySurface, is_covered};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{filter_distance, filter_unit};
@@ -30,23 +30,18 @@ impl ConvexQuery<'_> {
     pub(super) fn drop_walls(
         &self,
         contacts: &mut ContactList<PartContact>,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
+        dropped: &mut DroppedContacts,
     ) {
         let Some(surface) = self.surface.as_ref() else { return };
-        if !self.push_different_ways(contacts, SAME_PUSH, scratch)
+        if !self.push_different_ways(contacts, SAME_PUSH, at_hand)
             || surface.kind() == SurfaceKind::Sheet
         {
             return;
         }
-        let mut removed = std::mem::take(&mut scratch.dropped.removed);
-        self.find_walls(surface, contacts, scratch, &mut removed);
-        if removed.contains(&true) {
-            self.find_behind(contacts, 1.0 - AT_ONE_PLACE, scratch, &mut removed);
-        } else {
-            removed.clear();
-        }
-        scratch.dropped.removed = removed;
-        scratch.dropped.remove_from(contacts);
+        self.find_walls(surface, contacts, at_hand, &mut dropped.removed);
+        self.find_behind(contacts, 1.0 - AT_ONE_PLACE, at_hand, dropped);
+        dropped.remove_from(contacts);
     }
 
     /// Returns true if a normal is farther from the first one than an angle.
@@ -54,10 +49,10 @@ impl ConvexQuery<'_> {
         &self,
         contacts: &[Hit],
         cosine: f64,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) -> bool {
         let mut normals =
-            contacts.iter().map(|(of, hit)| self.shared_normal(*of, &hit.contact, scratch));
+            contacts.iter().map(|(of, hit)| self.shared_normal(*of, &hit.contact, at_hand));
         normals.next().is_some_and(|first| normals.any(|normal| first.dot(normal) < cosine))
     }
 
@@ -67,22 +62,21 @@ impl ConvexQuery<'_> {
         &self,
         surface: &LazySurface<'_>,
         contacts: &[Hit],
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
         removed: &mut Vec<bool>,
     ) {
-        let leads_out = |hit: &Hit, scratch: &mut ConvexScratch| {
-            hit.1.contact.distance < 0.0 && !self.leads_in(surface, hit, scratch)
-        };
-        let has_way_out = contacts.iter().any(|hit| leads_out(hit, scratch));
+        let leads_out =
+            |hit: &Hit| hit.1.contact.distance < 0.0 && !self.leads_in(surface, hit, at_hand);
+        let has_way_out = contacts.iter().any(leads_out);
         let mut last = None;
         removed.clear();
         removed.extend(contacts.iter().map(|hit @ (of, PartContact { contact, .. })| {
             let [triangle, part] = self.pair.mesh_place.swap(*of);
             let is_wall = surface.around(triangle).side == Side::Inner
-                || (has_way_out || contact.distance > 0.0) && self.leads_in(surface, hit, scratch);
+                || (has_way_out || contact.distance > 0.0) && self.leads_in(surface, hit, at_hand);
             is_wall && {
                 let known = last.filter(|(of, _)| *of == part);
-                let within = || (part, self.is_middle_within(surface, part, scratch));
+                let within = || (part, self.is_middle_within(surface, part, at_hand));
                 !last.insert(known.unwrap_or_else(within)).1
             }
         }));
@@ -94,11 +88,13 @@ impl ConvexQuery<'_> {
         &self,
         contacts: &[Hit],
         near: f64,
-        scratch: &mut ConvexScratch,
-        removed: &mut [bool],
+        at_hand: &mut PlacedParts,
+        DroppedContacts { removed, apart, .. }: &mut DroppedContacts,
     ) {
+        if !removed.contains(&true) {
+            return;
+        }
         let distance = |i: usize| contacts[i].1.contact.distance;
-        let mut apart = std::mem::take(&mut scratch.dropped.apart);
         apart.clear();
         let may_be_behind =
             |&i: &usize| self.depth(&contacts[i]) <= 0.0 && contacts[i].1.feature != Feature::Face;
@@ -106,10 +102,10 @@ impl ConvexQuery<'_> {
         apart.sort_unstable_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         // All triangles at a vertex have the same contact there.
         let mut last = None;
-        for &i in &apart {
+        for &i in &*apart {
             let (of, PartContact { contact, .. }) = &contacts[i];
             let [_, part] = self.pair.mesh_place.swap(*of);
-            let place = self.with_pair(*of, scratch, |pair| pair.touched_place(contact)).flatten();
+            let place = self.with_pair(*of, at_hand, |pair| pair.touched_place(contact)).flatten();
             let Some((place, seam)) = place.filter(|_| !removed[i]) else { continue };
             let known = last.filter(|(at, _)| *at == (part, place));
             let (_, is_behind) = *last.insert(known.unwrap_or_else(|| {
@@ -122,7 +118,6 @@ impl ConvexQuery<'_> {
             }));
             removed[i] = is_behind;
         }
-        scratch.dropped.apart = apart;
     }
 
     /// Returns true if a contact leads into the body behind its triangle.
@@ -130,14 +125,14 @@ impl ConvexQuery<'_> {
         &self,
         surface: &LazySurface<'_>,
         (of, hit): &Hit,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) -> bool {
         let [triangle, _] = self.pair.mesh_place.swap(*of);
         let around = surface.around(triangle);
         let area = area_vector(&self.pair.mesh.corners(triangle).map(Vec3::as_dvec3));
         let inward = -around.side.outward().unwrap_or(0.0) * area;
         let direction =
-            self.with_pair(*of, scratch, |pair| pair.placed.directions(hit.contact.normal)[0]);
+            self.with_pair(*of, at_hand, |pair| pair.placed.directions(hit.contact.normal)[0]);
         direction.is_some_and(|direction| {
             inward.dot(direction) > TANGENTIAL * inward.length()
                 && around.points_inside(triangle, hit.feature, direction)
@@ -149,10 +144,10 @@ impl ConvexQuery<'_> {
         &self,
         surface: &LazySurface<'_>,
         part: u32,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) -> bool {
         let is_within = self.pair.parts.with(part, |shape| {
-            let middle = self.placed(part, &shape, scratch).in_mesh(shape.shape.middle()?);
+            let middle = self.placed(part, &shape, at_hand).in_mesh(shape.shape.middle()?);
             let is_in = || surface.winding_sign(middle).is_some_and(|sign| sign != 0);
             Some(is_covered(self.pair.mesh.mesh, middle) && is_in())
         });
@@ -161,36 +156,32 @@ impl ConvexQuery<'_> {
 
     /// Marks contacts that push aside, if one [way](crate::pair::ways) leads a part out of all triangles. Also marks contacts
     /// apart over whose triangles the way lifts the part, and contacts behind them.
-    pub(super) fn find_lifted(&self, contacts: &[Hit], scratch: &mut ConvexScratch) {
+    pub(super) fn find_lifted(
+        &self,
+        contacts: &[Hit],
+        at_hand: &mut PlacedParts,
+        dropped: &mut DroppedContacts,
+    ) {
         let Some(surface) = self.surface.as_ref().filter(|_| !self.pair.is_ball()) else { return };
-        if !self.push_different_ways(contacts, SAME_DIRECTION, scratch) {
+        if !self.push_different_ways(contacts, SAME_DIRECTION, at_hand) {
             return;
         }
-        let mut ways = std::mem::take(&mut scratch.dropped.ways);
-        self.find_ways(surface, contacts, &mut ways, scratch);
+        let DroppedContacts { removed, ways, .. } = &mut *dropped;
+        self.find_ways(surface, contacts, ways, at_hand);
         let mut last = None;
-        let mut is_lifted = |hit: &Hit, scratch: &mut ConvexScratch| {
+        for (is_removed, hit) in removed.iter_mut().zip(contacts) {
             let [_, part] = self.pair.mesh_place.swap(hit.0);
             let known = last.filter(|(of, _)| *of == part);
             let (_, way) = *last.insert(known.unwrap_or_else(|| (part, ways.least(part as usize))));
-            let Some((way, length)) = way else { return false };
+            let Some((way, length)) = way else { continue };
             let along = way.dot(hit.1.contact.normal);
-            if self.depth(hit) > 0.0 {
-                return along < SAME_SIDE;
-            }
-            along < SAME_DIRECTION && self.is_parted(surface, hit, (way, length), scratch)
-        };
-        for (index, hit) in contacts.iter().enumerate() {
-            if is_lifted(hit, scratch) {
-                scratch.dropped.mark(index, contacts.len());
-            }
+            *is_removed = if self.depth(hit) > 0.0 {
+                along < SAME_SIDE
+            } else {
+                along < SAME_DIRECTION && self.is_parted(surface, hit, (way, length), at_hand)
+            };
         }
-        scratch.dropped.ways = ways;
-        let mut removed = std::mem::take(&mut scratch.dropped.removed);
-        if !removed.is_empty() {
-            self.find_behind(contacts, 1.0 + AT_ONE_PLACE, scratch, &mut removed);
-        }
-        scratch.dropped.removed = removed;
+        self.find_behind(contacts, 1.0 + AT_ONE_PLACE, at_hand, dropped);
     }
 
     /// Finds the ways that part each part from all triangles that it crosses. Contacts that hardly hover know ways, too.
@@ -199,7 +190,7 @@ impl ConvexQuery<'_> {
         surface: &LazySurface<'_>,
         contacts: &[Hit],
         ways: &mut Ways,
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) {
         let part_of = |of: [u32; 2]| self.pair.mesh_place.swap(of)[1] as usize;
         ways.clear();
@@ -212,7 +203,7 @@ impl ConvexQuery<'_> {
         let small = RESTING_DEPTH * self.filter_distance();
         for hit @ (of, PartContact { contact, .. }) in contacts {
             if self.depth(hit) > 0.0 {
-                let is_parted = |way, length| self.is_parted(surface, hit, (way, length), scratch);
+                let is_parted = |way, length| self.is_parted(surface, hit, (way, length), at_hand);
                 ways.keep_parting(part_of(*of), contact.normal, small, is_parted);
             }
         }
@@ -241,10 +232,10 @@ impl ConvexQuery<'_> {
         surface: &LazySurface<'_>,
         (of, hit): &Hit,
         (way, length): (DVec3, f64),
-        scratch: &mut ConvexScratch,
+        at_hand: &mut PlacedParts,
     ) -> bool {
         let [triangle, _] = self.pair.mesh_place.swap(*of);
-        let is_parted = self.with_pair(*of, scratch, |pair| {
+        let is_parted = self.with_pair(*of, at_hand, |pair| {
             let corners = &pair.placed.in_part(pair.corners);
             let heights = corners.map(|corner| corner.dot(way));
             let highest = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
