@@ -343,12 +343,8 @@ impl ConvexQuery<'_> {
         at_hand: &mut PlacedParts,
     ) -> DVec3 {
         let Parts::Many(..) = self.pair.parts else { return contact.normal };
-        let [_, part] = self.pair.mesh_place.swap(subshapes);
-        let turned = self
-            .pair
-            .parts
-            .with(part, |shape| self.placed(part, &shape, at_hand).directions(contact.normal)[0]);
-        turned.unwrap_or(contact.normal)
+        let in_mesh = |pair: TrianglePartPair<'_>| pair.placed.directions(contact.normal)[0];
+        self.with_pair(subshapes, at_hand, in_mesh).unwrap_or(contact.normal)
     }
 
     /// Returns a test for boxes around some parts: false only if all triangles are farther than `margin`.
