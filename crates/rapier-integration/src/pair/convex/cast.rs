@@ -13,7 +13,6 @@ use sbbk_core::query::{Cast, CastOptions, first_minimum, first_that_counts};
 use sbbk_core::surface::area_vector;
 
 use super::contact::{core_contact, core_support};
-use super::near::time_of;
 use super::search::{ConvexSearch, FoundTriangle, SupportPlane};
 use crate::mesh::is_minimum;
 use crate::pair::pose::MeshPlace;
@@ -63,8 +62,7 @@ impl ConvexSearch<'_> {
         counts: impl Fn(&Cast<FoundTriangle>) -> bool,
     ) -> Option<Cast<FoundTriangle>> {
         let CastOptions { max_time, target_distance: target, .. } = options;
-        let around = self.aabb_in_mesh();
-        let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
+        let time = self.time(self.aabb_in_mesh(), of_shape, target);
         let latest = f64::from(max_time);
         let plane = Cell::new(None::<SupportPlane>);
         let time_along = |of: SupportPlane, node| {

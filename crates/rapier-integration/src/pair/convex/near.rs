@@ -4,7 +4,6 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
-use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::shape::HalfSpace;
 use sbbk_core::traverse::{BoxTest, Counters, Placement, TestedBox};
@@ -75,77 +74,6 @@ fn near_ball(centre: Vec3, reach: Real, magnitude: Real) -> impl Fn(TestedBox) -
     }
 }
 
-/// Returns a lower bound of the distance between a box of a mesh and a part. `around` is the box around
-/// the part in the frame of the mesh.
-pub(super) fn gap_of(
-    placed: &PlacedPart,
-    shape: ConvexShape<'_>,
-    mesh: &MeshView<'_>,
-    around: Aabb,
-) -> impl Fn(TestedBox) -> Real {
-    let magnitude = mesh.magnitude();
-    let plane = match shape {
-        ConvexShape::HalfSpace(half_space) => {
-            Some(plane(&placed.placement, half_space, magnitude, 0.0))
-        }
-        _ => None,
-    };
-    let lost = rounding(mesh, &around);
-    move |node| {
-        if let Some((normal, height)) = plane {
-            return ((lowest(node, normal) - height) as Real).next_down().max(0.0);
-        }
-        let (centre, extent) = node.centre_extent();
-        let gap = (centre - around.center()).abs() - (extent + around.half_extents());
-        (gap.max(Vec3::ZERO).length() * (1.0 - gamma(8)) - lost).max(0.0)
-    }
-}
-
-/// Returns a bound of the rounding of boxes: some twenty operations.
-fn rounding(mesh: &MeshView<'_>, around: &Aabb) -> Real {
-    gamma(32) * mesh.magnitude().max(around.mins.abs().max(around.maxs.abs()).max_element())
-}
-
-/// Returns a lower bound of the time until a box of a mesh is within `target` of a moving part;
-/// `Real::MAX` if the two pass each other. `velocity` and `around`, the box around the part, are in the
-/// frame of the mesh.
-pub(super) fn time_of(
-    placed: &PlacedPart,
-    shape: ConvexShape<'_>,
-    mesh: &MeshView<'_>,
-    around: Aabb,
-    velocity: DVec3,
-    target: Real,
-) -> impl Fn(TestedBox) -> Real {
-    let gap = gap_of(placed, shape, mesh, around);
-    let slack = f64::from(target) + f64::from(rounding(mesh, &around));
-    let is_infinite = matches!(shape, ConvexShape::HalfSpace(_));
-    // Allows for the rounding of poses and boxes, and so of the velocity's direction.
-    let speed = velocity.length() * f64::from(1.0 + gamma(8));
-    let lost = f64::from(gamma(8)) * speed;
-    let (speeds, signs) = (velocity.abs(), velocity.signum());
-    let (per_fast, per_slow) = ((speeds + lost).recip(), (speeds - lost).recip());
-    let is_slow = speeds.cmple(DVec3::splat(lost));
-    let per_speed = speed.recip();
-    // Earliest and latest time at which the boxes overlap, grown by the target.
-    let overlap = move |node: TestedBox| {
-        let (centre, extent) = node.centre_extent();
-        let offset = (centre - around.center()).as_dvec3();
-        let reach = (extent + around.half_extents()).as_dvec3() + slack;
-        let ahead = DVec3::select(is_slow, offset.abs(), offset * signs);
-        let last = DVec3::select(is_slow, DVec3::INFINITY, (ahead + reach) * per_slow);
-        (((ahead - reach) * per_fast).max_element().max(0.0), last.min_element())
-    };
-    move |node| {
-        let (start, end) = if is_infinite { (0.0, f64::INFINITY) } else { overlap(node) };
-        let time = || start.max((f64::from(gap(node)) - f64::from(target)) * per_speed);
-        // False for NaN, as of a velocity of zero.
-        let is_time = |time: f64| time <= end && time < f64::from(Real::MAX);
-        let time = if is_time(start) { time() } else { f64::INFINITY };
-        if is_time(time) { (time as Real).next_down().max(0.0) } else { Real::MAX }
-    }
-}
-
 /// Returns the least coordinate of a box along a direction.
 pub(crate) fn lowest(node: TestedBox, normal: DVec3) -> f64 {
     let (centre, extent) = node.centre_extent();
@@ -154,7 +82,7 @@ pub(crate) fn lowest(node: TestedBox, normal: DVec3) -> f64 {
 
 /// Returns the plane `normal·x = height` above all points within `margin` of a half-space, in the frame
 /// of the mesh. `placement` is that frame in the frame of the half-space.
-fn plane(
+pub(super) fn plane(
     placement: &Placement,
     half_space: &HalfSpace,
     magnitude: Real,

@@ -11,9 +11,10 @@ use parry3d::shape::Shape;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
+use sbbk_core::volumes::rounding::gamma;
 
 use super::contact::{core_contact, core_support, core_touches};
-use super::near::{gap_of, lowest, time_of, triangles_near};
+use super::near::{lowest, plane, triangles_near};
 use super::parts::{Part, PlacedPart};
 use super::shape::{ConvexShape, Extent, KeptHull};
 use crate::mesh::{MeshView, box_of};
@@ -199,7 +200,7 @@ impl<'a> ConvexSearch<'a> {
 
     /// Returns the nearest triangle within `limit`: one that touches, if any does.
     pub(crate) fn nearest(&self, limit: f64) -> Option<FoundTriangle> {
-        let (gap, plane) = (self.gap(), Cell::new(None::<SupportPlane>));
+        let (gap, plane) = (self.gap(self.aabb_in_mesh()), Cell::new(None::<SupportPlane>));
         let gap = |node| gap(node).max(plane.get().map_or(0.0, |of| of.gap_of_box(node) as Real));
         self.least(limit, gap, |triangle, limit| {
             let found = self.triangle(&self.placed, triangle, limit)?;
@@ -221,18 +222,76 @@ impl<'a> ConvexSearch<'a> {
     ) {
         let time = |triangle, limit| Some((time(triangle, limit)? as Real, ()));
         let _ = if let Some((around, velocity)) = sweep {
-            let bound = time_of(&self.placed, self.convex, &self.mesh, around, velocity, 0.0);
-            self.least(limit, bound, time)
+            self.least(limit, self.time(around, velocity, 0.0), time)
         } else {
-            let (gap, unit) = (self.gap(), (1.0 / speed) as Real);
+            let (gap, unit) = (self.gap(self.aabb_in_mesh()), (1.0 / speed) as Real);
             let bound = |node| (gap(node) * unit).max((clear(node) as Real).next_down());
             self.least(limit, bound, time)
         };
     }
 
-    /// Returns a lower bound of the distance of the shape from boxes of the mesh.
-    fn gap(&self) -> impl Fn(TestedBox) -> Real {
-        gap_of(&self.placed, self.convex, &self.mesh, self.aabb_in_mesh())
+    /// Returns a lower bound of the distance between a box of the mesh and the shape. `around` is the box around
+    /// the shape in the frame of the mesh.
+    fn gap(&self, around: Aabb) -> impl Fn(TestedBox) -> Real {
+        let plane = match self.convex {
+            ConvexShape::HalfSpace(half_space) => {
+                Some(plane(&self.placed.placement, half_space, self.mesh.magnitude(), 0.0))
+            }
+            _ => None,
+        };
+        let lost = self.rounding(&around);
+        move |node| {
+            if let Some((normal, height)) = plane {
+                return ((lowest(node, normal) - height) as Real).next_down().max(0.0);
+            }
+            let (centre, extent) = node.centre_extent();
+            let gap = (centre - around.center()).abs() - (extent + around.half_extents());
+            (gap.max(Vec3::ZERO).length() * (1.0 - gamma(8)) - lost).max(0.0)
+        }
+    }
+
+    /// Returns a bound of the rounding of boxes: some twenty operations.
+    fn rounding(&self, around: &Aabb) -> Real {
+        let size = around.mins.abs().max(around.maxs.abs()).max_element();
+        gamma(32) * self.mesh.magnitude().max(size)
+    }
+
+    /// Returns a lower bound of the time until a box of the mesh is within `target` of the moving shape;
+    /// `Real::MAX` if the two pass each other. `velocity` and `around`, the box around the shape, are in the
+    /// frame of the mesh.
+    pub(super) fn time(
+        &self,
+        around: Aabb,
+        velocity: DVec3,
+        target: Real,
+    ) -> impl Fn(TestedBox) -> Real {
+        let gap = self.gap(around);
+        let slack = f64::from(target) + f64::from(self.rounding(&around));
+        let is_infinite = matches!(self.convex, ConvexShape::HalfSpace(_));
+        // Allows for the rounding of poses and boxes, and so of the velocity's direction.
+        let speed = velocity.length() * f64::from(1.0 + gamma(8));
+        let lost = f64::from(gamma(8)) * speed;
+        let (speeds, signs) = (velocity.abs(), velocity.signum());
+        let (per_fast, per_slow) = ((speeds + lost).recip(), (speeds - lost).recip());
+        let is_slow = speeds.cmple(DVec3::splat(lost));
+        let per_speed = speed.recip();
+        // Earliest and latest time at which the boxes overlap, grown by the target.
+        let overlap = move |node: TestedBox| {
+            let (centre, extent) = node.centre_extent();
+            let offset = (centre - around.center()).as_dvec3();
+            let reach = (extent + around.half_extents()).as_dvec3() + slack;
+            let ahead = DVec3::select(is_slow, offset.abs(), offset * signs);
+            let last = DVec3::select(is_slow, DVec3::INFINITY, (ahead + reach) * per_slow);
+            (((ahead - reach) * per_fast).max_element().max(0.0), last.min_element())
+        };
+        move |node| {
+            let (start, end) = if is_infinite { (0.0, f64::INFINITY) } else { overlap(node) };
+            let time = || start.max((f64::from(gap(node)) - f64::from(target)) * per_speed);
+            // False for NaN, as of a velocity of zero.
+            let is_time = |time: f64| time <= end && time < f64::from(Real::MAX);
+            let time = if is_time(start) { time() } else { f64::INFINITY };
+            if is_time(time) { (time as Real).next_down().max(0.0) } else { Real::MAX }
+        }
     }
 
     /// Returns the triangle with the least cost up to a limit. `bound` is a lower bound of the costs in
