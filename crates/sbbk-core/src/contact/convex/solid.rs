@@ -264,13 +264,6 @@ impl<'a, S: Solid> TriangleAndSolid<'a, S> {
         beside.iter().all(|x| *x > 0.0) || beside.iter().all(|x| *x < 0.0)
     }
 
-    /// Greatest value of [`nearer`](Self::nearer).
-    #[inline(always)]
-    fn open(&self, near: &OffsetPoint) -> f64 {
-        let [a, b, c] = self.nearer(near);
-        a.max(b).max(c)
-    }
-
     /// Height by which each corner is nearer than a point along the offset of the point, times the
     /// length of the offset.
     #[inline(always)]
@@ -283,8 +276,9 @@ impl<'a, S: Solid> TriangleAndSolid<'a, S> {
     /// the wrong one of several places.
     #[inline(always)]
     pub fn contact(&self, near: &OffsetPoint) -> Option<ConvexContact> {
+        let [a, b, c] = self.nearer(near);
         let is_apart = near.squared > self.doubtful() * self.doubtful()
-            && is_proved::<S>(near.squared, self.open(near), self.size);
+            && is_proved::<S>(near.squared, a.max(b).max(c), self.size);
         is_apart.then(|| ConvexContact::apart(near.point, -near.from_shape))
     }
 
