@@ -22,9 +22,42 @@ impl SupportMap for CuboidSupport {
         self.0.copysign(direction)
     }
 
-    #[inline(always)]
     fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        cuboid_contact(triangle, self, margin)
+        let pair = TriangleAndSolid::new(triangle, self, self.0.element_sum());
+        if !pair.size.is_finite() {
+            return None;
+        }
+        let beyond = margin.max(0.0) + BOUNDARY * pair.size;
+        let (of_box, facet) = pair.box_gap();
+        if of_box.width > beyond {
+            return None;
+        }
+        let doubtful = pair.doubtful();
+        if of_box.width > doubtful
+            && let BoxFacet::Box(axis) = facet
+            && let Some(contact) = pair.over_face(axis, of_box.outward[axis])
+        {
+            return Some(contact);
+        }
+        let of_triangle = pair.triangle_gap();
+        let mut widest = (of_box, facet);
+        if let Some(gap) = of_triangle {
+            if gap.width > beyond {
+                return None;
+            }
+            if gap.width > of_box.width {
+                widest = (gap, BoxFacet::Triangle);
+            }
+        }
+        if widest.0.width <= doubtful {
+            widest = pair.edge_gap(widest);
+        }
+        let contact = if widest.0.width < -doubtful {
+            pair.penetration(&widest.0, widest.1)
+        } else {
+            pair.contact(&pair.nearest(of_triangle.as_ref(), beyond)?)
+        };
+        contact.or_else(|| by_search(triangle, self, f64::INFINITY))
     }
 }
 
@@ -84,48 +117,6 @@ impl Solid for CuboidSupport {
         let t = if up > 0.0 { (down / up).clamp(low, high) } else { low };
         at(within_edge(t))
     }
-}
-
-fn cuboid_contact(
-    triangle: &[DVec3; 3],
-    cuboid: &CuboidSupport,
-    margin: f64,
-) -> Option<ConvexContact> {
-    let pair = TriangleAndSolid::new(triangle, cuboid, cuboid.0.element_sum());
-    if !pair.size.is_finite() {
-        return None;
-    }
-    let beyond = margin.max(0.0) + BOUNDARY * pair.size;
-    let (of_box, facet) = pair.box_gap();
-    if of_box.width > beyond {
-        return None;
-    }
-    let doubtful = pair.doubtful();
-    if of_box.width > doubtful
-        && let BoxFacet::Box(axis) = facet
-        && let Some(contact) = pair.over_face(axis, of_box.outward[axis])
-    {
-        return Some(contact);
-    }
-    let of_triangle = pair.triangle_gap();
-    let mut widest = (of_box, facet);
-    if let Some(gap) = of_triangle {
-        if gap.width > beyond {
-            return None;
-        }
-        if gap.width > of_box.width {
-            widest = (gap, BoxFacet::Triangle);
-        }
-    }
-    if widest.0.width <= doubtful {
-        widest = pair.edge_gap(widest);
-    }
-    let contact = if widest.0.width < -doubtful {
-        pair.penetration(&widest.0, widest.1)
-    } else {
-        pair.contact(&pair.nearest(of_triangle.as_ref(), beyond)?)
-    };
-    contact.or_else(|| by_search(triangle, cuboid, f64::INFINITY))
 }
 
 impl TriangleAndSolid<'_, CuboidSupport> {

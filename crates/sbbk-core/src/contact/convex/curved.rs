@@ -54,9 +54,33 @@ impl<const IS_CONE: bool> SupportMap for TurnedSupport<IS_CONE> {
         DVec3::new(direction.x * scale, y, direction.z * scale)
     }
 
-    #[inline(always)]
     fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        turned_contact(triangle, self, margin)
+        let pair = TriangleAndSolid::new(triangle, self, self.half_height + 2.0 * self.radius);
+        if !pair.size.is_finite() {
+            return None;
+        }
+        let beyond = margin.max(0.0) + BOUNDARY * pair.size;
+        let of_triangle = pair.triangle_gap();
+        if of_triangle.is_some_and(|gap| gap.width > beyond) {
+            return None;
+        }
+        let (low, high) = pair.heights();
+        let end = self.half_height;
+        if low - end > beyond || -end - high > beyond {
+            return None;
+        }
+        let is_through = |gap: Gap| gap.width < 0.0 && pair.is_pierced(&gap);
+        let contact = if of_triangle.is_some_and(is_through) {
+            pair.penetration(of_triangle)
+        } else {
+            let near = pair.nearest(of_triangle.as_ref(), beyond)?;
+            if near.squared <= pair.doubtful() * pair.doubtful() {
+                pair.penetration(of_triangle)
+            } else {
+                pair.contact(&near)
+            }
+        };
+        contact.or_else(|| by_search(triangle, self, f64::INFINITY))
     }
 }
 
@@ -183,39 +207,6 @@ impl<const IS_CONE: bool> TurnedSupport<IS_CONE> {
         let height = self.half_height;
         if IS_CONE { [(-height, -1.0), (-height, 1.0)] } else { [(height, 1.0), (-height, -1.0)] }
     }
-}
-
-fn turned_contact<const IS_CONE: bool>(
-    triangle: &[DVec3; 3],
-    solid: &TurnedSupport<IS_CONE>,
-    margin: f64,
-) -> Option<ConvexContact> {
-    let pair = TriangleAndSolid::new(triangle, solid, solid.half_height + 2.0 * solid.radius);
-    if !pair.size.is_finite() {
-        return None;
-    }
-    let beyond = margin.max(0.0) + BOUNDARY * pair.size;
-    let of_triangle = pair.triangle_gap();
-    if of_triangle.is_some_and(|gap| gap.width > beyond) {
-        return None;
-    }
-    let (low, high) = pair.heights();
-    let end = solid.half_height;
-    if low - end > beyond || -end - high > beyond {
-        return None;
-    }
-    let is_through = |gap: Gap| gap.width < 0.0 && pair.is_pierced(&gap);
-    let contact = if of_triangle.is_some_and(is_through) {
-        pair.penetration(of_triangle)
-    } else {
-        let near = pair.nearest(of_triangle.as_ref(), beyond)?;
-        if near.squared <= pair.doubtful() * pair.doubtful() {
-            pair.penetration(of_triangle)
-        } else {
-            pair.contact(&near)
-        }
-    };
-    contact.or_else(|| by_search(triangle, solid, f64::INFINITY))
 }
 
 impl<const IS_CONE: bool> TriangleAndSolid<'_, TurnedSupport<IS_CONE>> {

@@ -18,9 +18,28 @@ impl SupportMap for PointSupport {
         self.0
     }
 
+    /// A point on the triangle is parted from it along the triangle's normal, on whose side it counts
+    /// as being.
     #[inline(always)]
     fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        point_contact(triangle, self.0, margin)
+        let point = self.0;
+        let size = size(triangle, point);
+        let nearest = from_end(triangle, point);
+        let beyond = margin.max(0.0) + BOUNDARY * size;
+        if nearest.squared > beyond * beyond {
+            return None;
+        }
+        let near = PointPair::of(&nearest, triangle);
+        if let Some(contact) = near.contact::<PointSupport>(triangle, &[point; 2], size) {
+            return Some(contact);
+        }
+        let touches = nearest.squared <= (DOUBTFUL * size).powi(2) && nearest.vertices().len() == 3;
+        let Some((normal, squared)) = thin_normal(*triangle).filter(|_| touches) else {
+            return by_search(triangle, self, f64::INFINITY);
+        };
+        let normal = normal / squared.sqrt();
+        let height = (point - triangle[0]).dot(normal);
+        Some(ConvexContact::new(point - normal * height, normal, height))
     }
 }
 
@@ -35,9 +54,38 @@ impl SupportMap for SegmentSupport {
         if (b - a).dot(direction) > 0.0 { b } else { a }
     }
 
-    #[inline(always)]
+    /// The distance from the triangle is a convex function along the segment. If it rises from an end
+    /// on, that end is nearest. Otherwise the nearest point is between the ends and near an edge, or
+    /// the segment crosses.
     fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
-        segment_contact(triangle, &self.0)
+        let [p, q] = self.0;
+        let along = q - p;
+        let size = size(triangle, p) + along.abs().element_sum();
+        let doubtful = (DOUBTFUL * size).powi(2);
+        let from_p = from_end(triangle, p);
+        let from_q = from_end(triangle, q);
+        let (rises_to_q, rises_to_p) =
+            (along.dot(from_p.nearest) >= 0.0, along.dot(from_q.nearest) <= 0.0);
+        let nearer = if from_q.squared < from_p.squared { from_q } else { from_p };
+        let mut nearest = PointPair::of(&nearer, triangle);
+        if !(rises_to_q || rises_to_p) {
+            match penetration(triangle, &self.0) {
+                Some(contact) if contact.distance * contact.distance > doubtful => {
+                    return Some(contact);
+                }
+                Some(_) => return by_search(triangle, self, f64::INFINITY),
+                None => {}
+            }
+            for i in 0..3 {
+                let other = from_edge(triangle[i], triangle[(i + 1) % 3], p, along);
+                if other.squared < nearest.squared {
+                    nearest = other;
+                }
+            }
+        }
+        nearest
+            .contact::<SegmentSupport>(triangle, &self.0, size)
+            .or_else(|| by_search(triangle, self, f64::INFINITY))
     }
 }
 
@@ -83,63 +131,6 @@ impl PointPair {
         let is_proved = is_proved::<S>(squared, squared - reach, size);
         is_proved.then(|| ConvexContact::apart(on_triangle, difference))
     }
-}
-
-/// A point on the triangle is parted from it along the triangle's normal, on whose side it counts
-/// as being.
-#[inline(always)]
-fn point_contact(triangle: &[DVec3; 3], point: DVec3, margin: f64) -> Option<ConvexContact> {
-    let size = size(triangle, point);
-    let nearest = from_end(triangle, point);
-    let beyond = margin.max(0.0) + BOUNDARY * size;
-    if nearest.squared > beyond * beyond {
-        return None;
-    }
-    let near = PointPair::of(&nearest, triangle);
-    if let Some(contact) = near.contact::<PointSupport>(triangle, &[point; 2], size) {
-        return Some(contact);
-    }
-    let touches = nearest.squared <= (DOUBTFUL * size).powi(2) && nearest.vertices().len() == 3;
-    let Some((normal, squared)) = thin_normal(*triangle).filter(|_| touches) else {
-        return by_search(triangle, &PointSupport(point), f64::INFINITY);
-    };
-    let normal = normal / squared.sqrt();
-    let height = (point - triangle[0]).dot(normal);
-    Some(ConvexContact::new(point - normal * height, normal, height))
-}
-
-/// The distance from the triangle is a convex function along the segment. If it rises from an end
-/// on, that end is nearest. Otherwise the nearest point is between the ends and near an edge, or
-/// the segment crosses.
-fn segment_contact(triangle: &[DVec3; 3], segment: &[DVec3; 2]) -> Option<ConvexContact> {
-    let [p, q] = *segment;
-    let along = q - p;
-    let size = size(triangle, p) + along.abs().element_sum();
-    let doubtful = (DOUBTFUL * size).powi(2);
-    let from_p = from_end(triangle, p);
-    let from_q = from_end(triangle, q);
-    let (rises_to_q, rises_to_p) =
-        (along.dot(from_p.nearest) >= 0.0, along.dot(from_q.nearest) <= 0.0);
-    let nearer = if from_q.squared < from_p.squared { from_q } else { from_p };
-    let mut nearest = PointPair::of(&nearer, triangle);
-    if !(rises_to_q || rises_to_p) {
-        match penetration(triangle, segment) {
-            Some(contact) if contact.distance * contact.distance > doubtful => {
-                return Some(contact);
-            }
-            Some(_) => return by_search(triangle, &SegmentSupport(*segment), f64::INFINITY),
-            None => {}
-        }
-        for i in 0..3 {
-            let other = from_edge(triangle[i], triangle[(i + 1) % 3], p, along);
-            if other.squared < nearest.squared {
-                nearest = other;
-            }
-        }
-    }
-    nearest
-        .contact::<SegmentSupport>(triangle, segment, size)
-        .or_else(|| by_search(triangle, &SegmentSupport(*segment), f64::INFINITY))
 }
 
 #[inline(always)]
