@@ -156,12 +156,15 @@ impl Found {
 
     /// A triangle and a convex shape at another place.
     fn of_placed(found: &FoundTriangle, mesh_place: MeshPlace, placed: &PlacedPart) -> Self {
+        let FoundTriangle { triangle, contact, is_touching } = *found;
+        let [in_mesh, in_shape] = placed.directions(contact.normal);
+        let points = [placed.in_mesh(contact.on_triangle), contact.on_shape.as_vec3()];
         Self {
-            subshapes: mesh_place.swap([found.triangle, 0]),
-            distance: found.contact.distance,
-            is_touching: found.is_touching,
-            points: mesh_place.swap(found.points(placed)),
-            normals: mesh_place.swap(found.normals(placed)),
+            subshapes: mesh_place.swap([triangle, 0]),
+            distance: contact.distance,
+            is_touching,
+            points: mesh_place.swap(points),
+            normals: mesh_place.swap([in_mesh, -in_shape]).map(|normal| normal.as_vec3()),
         }
     }
 

@@ -90,7 +90,7 @@ impl ConvexSearch<'_> {
 
     /// Returns false if the mesh is nearer to the shape beside the point of an impact.
     fn is_minimum(&self, Cast { pair: found, .. }: &Cast<FoundTriangle>) -> bool {
-        let [place, _] = found.points(&self.placed).map(|point| point.as_dvec3());
+        let place = self.placed.in_mesh(found.contact.on_triangle).as_dvec3();
         let [direction, _] = self.placed.directions(found.contact.normal);
         let distance = found.contact.distance;
         distance <= 0.0 || is_minimum(self.mesh.mesh, found.triangle, place, (direction, distance))

@@ -241,7 +241,7 @@ impl PlacedPart {
 
     /// Returns a unit vector of the part's frame in the axes of the mesh and of the part.
     #[inline(always)]
-    pub(super) fn directions(&self, normal: DVec3) -> [DVec3; 2] {
+    pub(crate) fn directions(&self, normal: DVec3) -> [DVec3; 2] {
         if self.has_mesh_axes {
             [normal, (self.placement.rotation * normal).normalize()]
         } else {

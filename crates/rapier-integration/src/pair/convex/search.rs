@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
-use parry3d::math::{Pose, Real, Vector};
+use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
 use sbbk_core::contact::convex::ConvexContact;
@@ -47,21 +47,6 @@ pub(crate) struct FoundTriangle {
     /// In the frame of the shape, from the mesh to the shape.
     pub(crate) contact: ConvexContact,
     pub(crate) is_touching: bool,
-}
-
-impl FoundTriangle {
-    /// Returns the points on the mesh and on the shape, each in its frame.
-    pub(crate) fn points(&self, placed: &PlacedPart) -> [Vector; 2] {
-        let ConvexContact { on_triangle, on_shape, .. } = self.contact;
-        [placed.in_mesh(on_triangle), on_shape.as_vec3()]
-    }
-
-    /// Returns the outward unit normals of the mesh and of the shape, each in its frame.
-    pub(crate) fn normals(&self, placed: &PlacedPart) -> [Vector; 2] {
-        let normal = self.contact.normal;
-        let in_mesh: DVec3 = placed.placement.inverse * normal;
-        [in_mesh.normalize(), -normal].map(|normal| normal.as_vec3())
-    }
 }
 
 /// A plane on which the shape stands, across the normal of a contact. All of the mesh that is farther than the contact is below
