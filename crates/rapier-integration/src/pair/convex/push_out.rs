@@ -21,14 +21,14 @@ use crate::pair::query::ContactList;
 const DEEP: f64 = 0.1;
 
 impl<'q> ConvexQuery<'q> {
-    /// Returns the push-out of a part and its triangle, if more than half of the part is in the solid.
+    /// Returns the push-out of a part, if more than half of the part is in the solid.
     /// `deepest` is the least distance of the part's contacts, without its radius.
     pub(super) fn push_out(
         &self,
         part: u32,
         deepest: f64,
         at_hand: &mut PlacedParts,
-    ) -> Option<(u32, PartContact)> {
+    ) -> Option<Hit> {
         let surface = self.left_surface()?;
         let mesh = self.pair.mesh.mesh;
         self.pair.parts.with(part, |shape| {
@@ -57,7 +57,8 @@ impl<'q> ConvexQuery<'q> {
             let on_triangle = on_shape - distance * normal;
             let contact = ConvexContact { distance, normal, on_triangle, on_shape };
             let (feature, source) = (Feature::Face, NormalSource::PushOut);
-            Some((triangle, PartContact { contact, feature, source }))
+            let of = self.pair.mesh_place.swap([triangle, part]);
+            Some((of, PartContact { contact, feature, source }))
         })?
     }
 
@@ -85,9 +86,7 @@ impl<'q> ConvexQuery<'q> {
             let first = depths.get(depths.partition_point(|(of, _)| *of < part));
             let own = first.filter(|(of, _)| *of == part);
             let deepest = own.map_or(f64::INFINITY, |(_, distance)| *distance);
-            let push_out = self.push_out(part, deepest, at_hand);
-            let named = |(triangle, contact)| (mesh_place.swap([triangle, part]), contact);
-            pushed.extend(push_out.map(named));
+            pushed.extend(self.push_out(part, deepest, at_hand));
         });
         pushed.sort_unstable_by_key(part_of);
         contacts.retain(|hit| pushed.binary_search_by_key(&part_of(hit), part_of).is_err());

@@ -315,9 +315,9 @@ impl ConvexQuery<'_> {
 
     /// Replaces the contacts of a ball by its push-out, if it has one, and corrects the rest.
     fn end_ball(&self, scratch: &mut ConvexScratch, contacts: &mut ContactList<PartContact>) {
-        if let Some((triangle, contact)) = self.push_out(0, f64::INFINITY, &mut scratch.at_hand) {
+        if let Some(push_out) = self.push_out(0, f64::INFINITY, &mut scratch.at_hand) {
             contacts.clear();
-            contacts.push((self.pair.mesh_place.swap([triangle, 0]), contact));
+            contacts.push(push_out);
         }
         self.correct(contacts, scratch);
     }
