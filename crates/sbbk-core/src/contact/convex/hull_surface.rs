@@ -20,6 +20,7 @@ pub(super) const ROUNDING: f64 = 1.0e-14;
 const FLAT: f64 = 1.0e-9;
 
 /// A closed convex surface of triangles.
+#[derive(Default)]
 pub(super) struct HullSurface {
     /// The unit normal of each face, outward, and how far the hull reaches along it.
     pub planes: ArrayVec<(DVec3, f64), FACES>,
@@ -37,7 +38,7 @@ impl HullSurface {
     pub fn from_triangles(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
         let slack = ROUNDING * size(points.iter().copied());
         let (neighbors, unused) = neighbors_of(points.len(), triangles)?;
-        let mut surface = Self { neighbors, ..Self::empty() };
+        let mut surface = Self { neighbors, ..Self::default() };
         for triangle in triangles {
             let corners = triangle.map(|corner| points[corner as usize]);
             surface.planes.push(plane(&corners)?);
@@ -68,7 +69,7 @@ impl HullSurface {
             }
         }
         let mut numbers = [u8::MAX; 2 * FACES];
-        let mut surface = Self::empty();
+        let mut surface = Self::default();
         for (i, face) in polytope.faces() {
             let (height, _) = points.farthest(face.normal);
             let corners = polytope.corners(face).map(|corner| corner.point);
@@ -85,10 +86,6 @@ impl HullSurface {
             surface.neighbors.push(face.neighbors.map(|i| numbers[usize::from(i)]));
         }
         Some(surface)
-    }
-
-    fn empty() -> Self {
-        Self { planes: ArrayVec::new(), corners: Vec::new(), neighbors: Vec::new() }
     }
 }
 
