@@ -30,7 +30,7 @@ impl SupportMap for PointSupport {
             return None;
         }
         let near = PointPair::of(&nearest, triangle);
-        if let Some(contact) = near.contact::<PointSupport>(triangle, &[point; 2], size) {
+        if let Some(contact) = near.contact(triangle, &[point; 2], size) {
             return Some(contact);
         }
         let touches = nearest.squared <= (DOUBTFUL * size).powi(2) && nearest.vertices().len() == 3;
@@ -84,7 +84,7 @@ impl SupportMap for SegmentSupport {
             }
         }
         nearest
-            .contact::<SegmentSupport>(triangle, &self.0, size)
+            .contact(triangle, &self.0, size)
             .or_else(|| by_search(triangle, self, f64::INFINITY))
     }
 }
@@ -116,7 +116,7 @@ impl PointPair {
     /// The contact of bodies of a given size. `None` if rounding may have chosen the point: the
     /// bodies touch, or several places tie.
     #[inline(always)]
-    fn contact<S: SupportMap>(
+    fn contact(
         &self,
         &[a, b, c]: &[DVec3; 3],
         &[p, q]: &[DVec3; 2],
@@ -128,7 +128,7 @@ impl PointPair {
         }
         let along = |x: DVec3| (x - on_triangle).dot(difference);
         let reach = along(p).min(along(q)) - along(a).max(along(b)).max(along(c));
-        let is_proved = is_proved::<S>(squared, squared - reach, size);
+        let is_proved = is_proved::<SegmentSupport>(squared, squared - reach, size);
         is_proved.then(|| ConvexContact::apart(on_triangle, difference))
     }
 }
