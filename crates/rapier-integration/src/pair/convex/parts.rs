@@ -7,7 +7,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::{CompositeShape, Shape, ShapeType};
+use parry3d::shape::{CompositeShape, Shape, ShapeType, TypedShape};
 use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
@@ -35,26 +35,28 @@ pub(super) struct Part<'p> {
 impl<'a> Parts<'a> {
     /// Returns `None` for shapes that only Parry supports. Does not look at the [parts](Self::are_supported) of compounds.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
-        if let Some(compound) = shape.as_compound() {
-            let (flags, aabb) = (u32::from(compound.flags().bits()), compound.local_aabb());
-            let (kind, ends) = (ShapeType::Compound, [aabb.mins, aabb.maxs]);
-            let token = ShapeToken::of_list(kind, compound.shapes(), flags, ends);
-            return Some(Self::Many(compound, token));
+        match shape.as_typed_shape() {
+            TypedShape::Compound(compound) => {
+                let (parts, flags) = (compound.shapes(), compound.flags().bits().into());
+                let aabb = compound.local_aabb();
+                let token = ShapeToken::of_parts(ShapeType::Compound, parts, flags, aabb);
+                Some(Self::Many(compound, token))
+            }
+            TypedShape::Polyline(polyline) if !polyline.is_deformable() => {
+                let (parts, flags) = (polyline.indices(), polyline.flags().bits().into());
+                let aabb = polyline.bvh().root_aabb();
+                let token = ShapeToken::of_parts(ShapeType::Polyline, parts, flags, &aabb);
+                Some(Self::Many(polyline, token))
+            }
+            _ => ConvexShape::of(shape).map(Self::One),
         }
-        if let Some(polyline) = shape.as_polyline() {
-            let (flags, aabb) = (u32::from(polyline.flags().bits()), polyline.bvh().root_aabb());
-            let (kind, ends) = (ShapeType::Polyline, [aabb.mins, aabb.maxs]);
-            let token = ShapeToken::of_list(kind, polyline.indices(), flags, ends);
-            return (!polyline.is_deformable()).then_some(Self::Many(polyline, token));
-        }
-        ConvexShape::of(shape).map(Self::One)
     }
 
     /// Returns false for a compound with a part that only Parry supports. Looks at all parts.
     pub(crate) fn are_supported(&self, shape: &dyn Shape) -> bool {
-        let is_supported = |part: &dyn Shape| ConvexShape::of(part).is_some();
-        let compound = if let Self::Many(..) = self { shape.as_compound() } else { None };
-        compound.is_none_or(|it| it.shapes().iter().all(|(_, part)| is_supported(&**part)))
+        let Self::Many(..) = self else { return true };
+        let TypedShape::Compound(compound) = shape.as_typed_shape() else { return true };
+        compound.shapes().iter().all(|(_, part)| ConvexShape::of(&**part).is_some())
     }
 
     /// Calls `then` with a part.

@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use glamx::{DVec3, Vec3, Vec3Swizzles};
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{
     Ball, ConvexPolyhedron, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType, TypedShape,
@@ -73,11 +74,12 @@ impl ConvexShape<'_> {
     pub(super) fn token(&self) -> ShapeToken {
         let one = |vector| [vector, Vec3::ZERO, Vec3::ZERO];
         let round = |half_height, radius| one(Vec3::new(half_height, radius, 0.0));
+        let mut list = (0, 0);
         let (kind, numbers) = match *self {
             Self::Ball(_) => (ShapeType::Ball, one(Vec3::ZERO)),
             Self::HalfSpace(half_space) => (ShapeType::HalfSpace, one(half_space.normal)),
             Self::Cuboid(cuboid) => (ShapeType::Cuboid, one(cuboid.half_extents)),
-            Self::Features { core, radius, .. } => match core {
+            Self::Features { core, .. } => match core {
                 TypedShape::Segment(it) => (ShapeType::Segment, [it.a, it.b, Vec3::ZERO]),
                 TypedShape::Triangle(it) => (ShapeType::Triangle, [it.a, it.b, it.c]),
                 TypedShape::Cuboid(it) => (ShapeType::RoundCuboid, one(it.half_extents)),
@@ -85,15 +87,15 @@ impl ConvexShape<'_> {
                 TypedShape::Cone(it) => (ShapeType::Cone, round(it.half_height, it.radius)),
                 TypedShape::ConvexPolyhedron(hull) => {
                     let points = hull.points();
+                    list = (points.as_ptr().addr(), points.len());
                     let [a, b] =
                         [points.first(), points.last()].map(|end| end.copied().unwrap_or_default());
-                    let token = ShapeToken::of_list(ShapeType::ConvexPolyhedron, points, 0, [a, b]);
-                    return ShapeToken { radius, ..token };
+                    (ShapeType::ConvexPolyhedron, [a, b, Vec3::ZERO])
                 }
                 _ => (ShapeType::Custom, one(Vec3::ZERO)),
             },
         };
-        ShapeToken { kind, list: (0, 0), flags: 0, numbers, radius: self.radius() }
+        ShapeToken { kind, list, flags: 0, numbers, radius: self.radius() }
     }
 
     /// Returns a point within the shape; `None` for a half-space.
@@ -127,9 +129,9 @@ pub(crate) struct ShapeToken {
 }
 
 impl ShapeToken {
-    pub(super) fn of_list<T>(kind: ShapeType, list: &[T], flags: u32, [a, b]: [Vec3; 2]) -> Self {
-        let list = (list.as_ptr().addr(), list.len());
-        Self { kind, list, flags, numbers: [a, b, Vec3::ZERO], radius: 0.0 }
+    pub(super) fn of_parts<T>(kind: ShapeType, parts: &[T], flags: u32, aabb: &Aabb) -> Self {
+        let list = (parts.as_ptr().addr(), parts.len());
+        Self { kind, list, flags, numbers: [aabb.mins, aabb.maxs, Vec3::ZERO], radius: 0.0 }
     }
 }
 
