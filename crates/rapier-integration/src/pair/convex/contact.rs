@@ -1,7 +1,7 @@
 //! The exact contact of a triangle and a convex shape, by [`sbbk_core::contact::convex`].
 
 use glamx::DVec3;
-use parry3d::shape::{Cuboid, TypedShape};
+use parry3d::shape::TypedShape;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, PointSupport, SegmentSupport,
@@ -68,7 +68,10 @@ macro_rules! with_core {
         match $shape {
             ConvexShape::Ball(_) => of!(&PointSupport(DVec3::ZERO)),
             ConvexShape::HalfSpace(_) => None,
-            ConvexShape::Cuboid(cuboid) => of!(&cuboid_support(cuboid)),
+            ConvexShape::Cuboid(it)
+            | ConvexShape::Features { core: TypedShape::Cuboid(it), .. } => {
+                of!(&CuboidSupport(it.half_extents.as_dvec3()))
+            }
             ConvexShape::Features { core, .. } => match core {
                 TypedShape::Segment(it) => {
                     of!(&SegmentSupport([it.a, it.b].map(|end| end.as_dvec3())))
@@ -76,7 +79,6 @@ macro_rules! with_core {
                 TypedShape::Triangle(it) => {
                     of!(&TriangleSupport([it.a, it.b, it.c].map(|corner| corner.as_dvec3())))
                 }
-                TypedShape::Cuboid(it) => of!(&cuboid_support(it)),
                 TypedShape::Cylinder(it) => {
                     let (half_height, radius) = (it.half_height.into(), it.radius.into());
                     of!(&CylinderSupport { half_height, radius })
@@ -133,8 +135,4 @@ pub(super) fn core_touches(
             && convex_touches(triangle, hull.of(shape), reach);
     }
     core_contact(placed, triangle, shape, hull, reach).is_some()
-}
-
-fn cuboid_support(cuboid: &Cuboid) -> CuboidSupport {
-    CuboidSupport(cuboid.half_extents.as_dvec3())
 }
