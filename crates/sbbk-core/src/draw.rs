@@ -1,14 +1,14 @@
 //! Lines of trees and queries for a debug renderer, handed to a closure.
 //!
 //! ```
-//! # use sbbk_core::tree::{BuildOptions, Tree};
+//! # use sbbk_core::tree::Tree;
 //! # use glamx::Vec3;
 //! use glamx::Pose3;
 //! use sbbk_core::draw::layer;
 //!
 //! # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! # let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
+//! let tree = Tree::build(&vertices, &triangles, None)?;
 //! let mut lines = Vec::new();
 //! layer(&tree, 4, &Pose3::IDENTITY, |a, b, colour| lines.push((a, b, colour)));
 //! assert!(!lines.is_empty());

@@ -46,4 +46,4 @@ pub use contact::contact;
 pub use query::{SearchScratch, cast, contacts, deepest, meeting, nearest};
 pub use surface::Surface;
 pub use traverse::Placement;
-pub use tree::{BuildError, BuildOptions, Tree};
+pub use tree::{BuildError, Tree};

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use parry3d::shape::{CompositeShape, Shape, SharedShape, TriMesh};
 use sbbk_core::surface::SurfaceKind;
-use sbbk_core::tree::{BuildError, BuildOptions, Tree};
+use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{MeshStore, MeshView, PairMesh, Registered};
 use crate::{SbbkConfig, SbbkStats};
@@ -30,8 +30,7 @@ pub struct SbbkDispatcher {
 impl SbbkDispatcher {
     /// Returns a dispatcher without trees.
     pub fn new(config: SbbkConfig) -> Self {
-        let options = BuildOptions { layers: config.layers, ..BuildOptions::default() };
-        let store = MeshStore::new(options, config.idle_tree_bytes);
+        let store = MeshStore::new(config.layers, config.idle_tree_bytes);
         Self { config, store: Arc::new(store) }
     }
 

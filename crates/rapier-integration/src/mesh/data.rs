@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
 use arrayvec::ArrayVec;
 use parry3d::shape::TriMesh;
 use sbbk_core::surface::{Surface, SurfaceKind, kind};
-use sbbk_core::tree::{BuildError, BuildOptions, Tree};
+use sbbk_core::tree::{BuildError, LayerPlan, Tree};
 
 use super::flags::TriangleFlags;
 use super::neighbours::Neighbours;
@@ -56,12 +56,16 @@ impl MeshData {
     }
 
     /// Builds the tree, unless it is there. Returns true if this call built it.
-    pub(super) fn build(&self, mesh: &TriMesh, options: &BuildOptions) -> Result<bool, BuildError> {
+    pub(super) fn build(
+        &self,
+        mesh: &TriMesh,
+        layers: Option<LayerPlan>,
+    ) -> Result<bool, BuildError> {
         if self.tree.get().is_some() {
             return Ok(false);
         }
         self.has_build_begun.store(true, Ordering::Relaxed);
-        let tree = Tree::build(mesh.vertices(), mesh.indices(), options)?;
+        let tree = Tree::build(mesh.vertices(), mesh.indices(), layers)?;
         Ok(self.tree.set(tree).is_ok())
     }
 

@@ -252,7 +252,6 @@ impl<'a> LazySurface<'a> {
 #[cfg(test)]
 mod tests {
     use parry3d::shape::{Ball, SharedShape, TriMesh, TriMeshFlags};
-    use sbbk_core::tree::BuildOptions;
 
     use super::*;
     use crate::mesh::MeshStore;
@@ -264,7 +263,7 @@ mod tests {
     }
 
     fn store() -> MeshStore {
-        MeshStore::new(BuildOptions::default(), 1 << 20)
+        MeshStore::new(None, 1 << 20)
     }
 
     #[test]

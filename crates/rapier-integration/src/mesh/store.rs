@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, Weak};
 
 use parry3d::shape::{SharedShape, TriMesh};
 use sbbk_core::surface::{Surface, SurfaceKind};
-use sbbk_core::tree::{BuildError, BuildOptions};
+use sbbk_core::tree::{BuildError, LayerPlan};
 
 use super::budget::BuildBudget;
 use super::data::MeshData;
@@ -24,7 +24,8 @@ use crate::{SbbkInternals, SbbkStats};
 pub(crate) struct MeshStore {
     /// Number of this store among all stores of the process.
     pub(super) id: u64,
-    options: BuildOptions,
+    /// The volumes of trees.
+    layers: Option<LayerPlan>,
     /// Bytes that recently used meshes may keep.
     recent_limit: usize,
     contents: Mutex<Contents>,
@@ -71,10 +72,10 @@ struct Contents {
 }
 
 impl MeshStore {
-    pub(crate) fn new(options: BuildOptions, recent_limit: usize) -> Self {
+    pub(crate) fn new(layers: Option<LayerPlan>, recent_limit: usize) -> Self {
         static NEXT_ID: AtomicU64 = AtomicU64::new(0);
         let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
-        Self { id, options, recent_limit, ..Self::default() }
+        Self { id, layers, recent_limit, ..Self::default() }
     }
 
     /// Registers a mesh, with its tree and surface: `shape` by its address, a large mesh without a
@@ -190,7 +191,7 @@ impl MeshStore {
     }
 
     fn build(&self, mesh: &TriMesh, data: &Arc<MeshData>) -> Result<(), BuildError> {
-        if data.build(mesh, &self.options)? {
+        if data.build(mesh, self.layers)? {
             self.counters.tree_builds.raise();
             self.contents().keep_recent(data, self.recent_limit);
         }
@@ -324,7 +325,7 @@ mod tests {
     }
 
     fn store(recent_limit: usize) -> MeshStore {
-        MeshStore::new(BuildOptions::default(), recent_limit)
+        MeshStore::new(None, recent_limit)
     }
 
     #[test]

@@ -13,7 +13,7 @@
 //! use glamx::{Pose3, Vec3};
 //! use sbbk_core::field::{FieldFrame, FieldLeaves, HeightGrid};
 //! use sbbk_core::traverse::{Placement, TestedBox};
-//! use sbbk_core::tree::{BuildOptions, Tree};
+//! use sbbk_core::tree::Tree;
 //!
 //! /// A plane of 100 by 100 cells of one unit.
 //! struct Plane([f32; 101]);
@@ -37,7 +37,7 @@
 //! let field = Plane([0.0; 101]);
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|x| 0.2 * x);
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
+//! let tree = Tree::build(&vertices, &triangles, None)?;
 //! let placement = Placement::new(&Pose3::translation(7.1, 0.01, -3.9));
 //! let frame = FieldFrame::new(&field, &placement, 0.02);
 //! let leaves = FieldLeaves::new(&frame, tree.bounding_ball().centre, tree.magnitude());

@@ -19,13 +19,12 @@
 //! use glamx::Pose3;
 //! use sbbk_core::front::Front;
 //! use sbbk_core::traverse::{DescentCounts, PairFrame, Placement};
-//! # use sbbk_core::tree::{BuildOptions, Tree};
+//! # use sbbk_core::tree::Tree;
 //! # use glamx::Vec3;
 //!
 //! # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! # let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! # let options = BuildOptions { leaf_size: 1, ..BuildOptions::default() };
-//! let tree = Tree::build(&vertices, &triangles, &options)?;
+//! let tree = Tree::build(&vertices, &triangles.repeat(4), None)?;
 //! let mut front = Front::default();
 //! let mut tests = Vec::new();
 //! for step in 0..3 {

@@ -11,11 +11,11 @@
 //! use glamx::{Pose3, Vec3};
 //! use sbbk_core::query::{SearchScratch, nearest};
 //! use sbbk_core::traverse::{PairFrame, Placement};
-//! use sbbk_core::tree::{BuildOptions, Tree};
+//! use sbbk_core::tree::Tree;
 //!
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
+//! let tree = Tree::build(&vertices, &triangles, None)?;
 //!
 //! let placement = Placement::new(&Pose3::translation(0.0, 0.0, 3.0));
 //! let mut scratch = SearchScratch::default();

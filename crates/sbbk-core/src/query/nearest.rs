@@ -215,14 +215,12 @@ mod tests {
 
     use super::*;
     use crate::support::{Random, bumpy_ball};
-    use crate::tree::BuildOptions;
 
     /// The meshes have 16 million pairs of triangles.
     #[test]
     fn searches_of_large_meshes_test_few_pairs() {
         let ball = bumpy_ball(32, 0.1);
-        let tree: Tree =
-            Tree::build(&ball.vertices, &ball.triangles, &BuildOptions::default()).unwrap();
+        let tree = Tree::build(&ball.vertices, &ball.triangles, None).unwrap();
         let mut random = Random(7);
         let mut scratch = SearchScratch::default();
         for (distance, limit, goal) in [
@@ -252,7 +250,7 @@ mod tests {
             let corners = (0..cells).flat_map(|i| (0..cells).map(move |j| i * (cells + 1) + j));
             let cell = |a: u32| [[a, a + 1, a + cells + 1], [a + 1, a + cells + 2, a + cells + 1]];
             let triangles: Vec<_> = corners.flat_map(cell).collect();
-            Tree::build(&vertices, &triangles, &BuildOptions::default()).unwrap()
+            Tree::build(&vertices, &triangles, None).unwrap()
         };
         let (large, small) = (plane(128, 2.0), plane(8, 0.7));
         let placement = Placement::new(&Pose3::translation(0.1, 1.4, 0.2));

@@ -9,7 +9,7 @@ use super::gaps::Bound;
 use super::{NodeLanes, OrderedOverlap, PairFrame, Placement, Toward};
 use crate::simd::{Inner, Outer, each};
 use crate::support::Random;
-use crate::tree::{BuildOptions, Children, Intervals, LayerPlan, Slot, Tree};
+use crate::tree::{BATCH, Children, Intervals, LayerPlan, Slot, Tree};
 use crate::volumes::{SLABS, directions};
 
 /// The largest rounding error towards false separations, as a share of its allowance.
@@ -34,7 +34,7 @@ impl Loss {
     }
 }
 
-/// Two trees of two triangles each, as k-DOPs under their roots.
+/// Two trees of two different triangles each, as k-DOPs under their roots.
 struct Pair {
     trees: [Tree; 2],
     pos12: Pose3,
@@ -44,13 +44,13 @@ impl Pair {
     /// Near each other, near the origin of their frames or far from it.
     fn random(random: &mut Random, i: usize) -> Self {
         let layers = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };
-        let options = BuildOptions { layers: Some(layers), leaf_size: 1 };
         let far = [0.0, 1.0, 30.0, 1.0e3][i % 4];
         let places = [(); 2].map(|()| random.vector(1.0) * far);
         let trees = places.map(|place| {
             let corner = |k: u32| place + 0.3 * random.vector(1.0) + Vec3::X * (k / 3) as f32;
             let corners = [0, 1, 2, 3, 4, 5].map(corner);
-            Tree::build(&corners, &[[0, 1, 2], [3, 4, 5]], &options).unwrap()
+            let leaves = [[[0, 1, 2]; BATCH], [[3, 4, 5]; BATCH]];
+            Tree::build(&corners, leaves.as_flattened(), Some(layers)).unwrap()
         });
         let scale = [1.0, 0.9, 1.2, 1.0][i / 4 % 4];
         let turn = random.rotation() * scale;
@@ -281,7 +281,7 @@ fn bounds_are_below_those_of_corners_and_not_far_below() {
 #[test]
 fn there_is_no_direction_where_projections_may_overflow() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| 2.0e38 * corner);
-    let tree: Tree = Tree::build(&corners, &[[0, 1, 2]], &BuildOptions::default()).unwrap();
+    let tree = Tree::build(&corners, &[[0, 1, 2]], None).unwrap();
     let frame = PairFrame::new((&tree, &tree), Placement::new(&Pose3::IDENTITY), 0.0);
     assert!(Toward::new(&frame, DVec3::X).is_none());
 }

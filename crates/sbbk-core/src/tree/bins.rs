@@ -2,6 +2,7 @@
 
 use glamx::{Vec3, Vec3A};
 
+use super::node::BATCH;
 use crate::volumes::Aabb;
 
 /// Greatest number of bins. Higher: slightly better splits; lower: faster builds.
@@ -101,8 +102,8 @@ impl Bin {
 
     /// The cost of testing full leaves in a volume of this size; NaN for an empty bin.
     #[inline]
-    fn cost(&self, leaf_size: u32) -> f32 {
-        self.bounds.half_area() * self.count.div_ceil(leaf_size) as f32
+    fn cost(&self) -> f32 {
+        self.bounds.half_area() * self.count.div_ceil(BATCH as u32) as f32
     }
 }
 
@@ -131,7 +132,7 @@ impl Bins {
     }
 
     /// The cheapest split that has triangles on both sides.
-    pub(super) fn best_split(&self, leaf_size: usize) -> Option<Split> {
+    pub(super) fn best_split(&self) -> Option<Split> {
         let bins = &self.bins[..self.bin_count];
         let mut above = [Bin::EMPTY; MOST_BINS + 1];
         for (i, bin) in bins.iter().enumerate().rev() {
@@ -142,7 +143,7 @@ impl Bins {
         let mut below = Bin::EMPTY;
         for i in 1..bins.len() {
             below = below.merge(&bins[i - 1]);
-            let cost = below.cost(leaf_size as u32) + above[i].cost(leaf_size as u32);
+            let cost = below.cost() + above[i].cost();
             // False if a side is empty, as the cost is NaN.
             if cost < best_cost {
                 best_cost = cost;

@@ -12,7 +12,6 @@
 
 use glamx::Vec3;
 
-use super::LayerPlan;
 use super::bins::{BinMapping, Bins, Bounds};
 use super::node::BATCH;
 use crate::volumes::Aabb;
@@ -20,22 +19,6 @@ use crate::volumes::Aabb;
 /// Depth of the last nodes that are split by cost. Higher: deeper trees; lower: worse trees of
 /// meshes with a few very deep parts. Ordinary trees have 20 to 30 levels.
 const DEEPEST_BY_COST: u32 = 64;
-
-/// Options of a build.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct BuildOptions {
-    /// The volumes of each layer. `None`: chosen for the mesh by the model of [`LayerPlan`].
-    pub layers: Option<LayerPlan>,
-    /// Greatest number of triangles in a leaf, clamped to 1 to [`BATCH`]. Higher: smaller trees;
-    /// lower: fewer triangle tests.
-    pub leaf_size: usize,
-}
-
-impl Default for BuildOptions {
-    fn default() -> Self {
-        Self { layers: None, leaf_size: BATCH }
-    }
-}
 
 /// The tree under construction.
 pub(super) struct BuildTree {
@@ -70,12 +53,7 @@ struct Task {
     range: std::ops::Range<usize>,
 }
 
-pub(super) fn build(
-    vertices: &[Vec3],
-    triangles: &[[u32; 3]],
-    options: &BuildOptions,
-) -> BuildTree {
-    let leaf_size = options.leaf_size.clamp(1, BATCH);
+pub(super) fn build(vertices: &[Vec3], triangles: &[[u32; 3]]) -> BuildTree {
     let mut primitives = primitives(vertices, triangles);
     let mut nodes = Vec::with_capacity(triangles.len());
     nodes.push(BuildNode {
@@ -85,12 +63,12 @@ pub(super) fn build(
     });
     let mut tasks = vec![Task { node: 0, range: 0..primitives.len() }];
     while let Some(Task { node, range }) = tasks.pop() {
-        if range.len() <= leaf_size {
+        if range.len() <= BATCH {
             nodes[node as usize].content = Content::Leaf(range.start as u32..range.end as u32);
             continue;
         }
         let depth = nodes[node as usize].depth + 1;
-        let (middle, bounds) = split(&mut primitives[range.clone()], leaf_size, depth);
+        let (middle, bounds) = split(&mut primitives[range.clone()], depth);
         let middle = range.start + middle;
         let first = nodes.len() as u32;
         let children = [range.start..middle, middle..range.end];
@@ -118,10 +96,10 @@ fn bounds(primitives: &[Primitive]) -> Bounds {
 
 /// Reorders the primitives by the best split into nodes at `depth`. Returns the start of the second
 /// half, never at an end, and the boxes of both.
-fn split(primitives: &mut [Primitive], leaf_size: usize, depth: u32) -> (usize, [Bounds; 2]) {
+fn split(primitives: &mut [Primitive], depth: u32) -> (usize, [Bounds; 2]) {
     let centroids =
         primitives.iter().fold(Bounds::EMPTY, |all, p| all.with_point(p.bounds.centre()));
-    if primitives.len() <= 2 * leaf_size || depth > DEEPEST_BY_COST {
+    if primitives.len() <= 2 * BATCH || depth > DEEPEST_BY_COST {
         let axis = centroids.longest_axis();
         primitives
             .sort_unstable_by(|a, b| a.bounds.centre()[axis].total_cmp(&b.bounds.centre()[axis]));
@@ -132,7 +110,7 @@ fn split(primitives: &mut [Primitive], leaf_size: usize, depth: u32) -> (usize, 
         for primitive in &*primitives {
             bins.add(mapping.bin(primitive.bounds.centre()), &primitive.bounds);
         }
-        if let Some(split) = bins.best_split(leaf_size) {
+        if let Some(split) = bins.best_split() {
             let middle = partition(primitives, |p| mapping.bin(p.bounds.centre()) < split.bin);
             return (middle, split.bounds);
         }

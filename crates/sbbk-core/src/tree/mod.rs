@@ -6,11 +6,11 @@
 //!
 //! ```
 //! use glamx::Vec3;
-//! use sbbk_core::tree::{BuildOptions, Tree};
+//! use sbbk_core::tree::Tree;
 //!
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
+//! let tree = Tree::build(&vertices, &triangles, None)?;
 //!
 //! let mut nodes = vec![tree.root()];
 //! let mut triangle_count = 0;
@@ -28,7 +28,6 @@ mod layers;
 mod node;
 mod pack;
 
-pub use build::BuildOptions;
 pub use layers::LayerPlan;
 use node::Link;
 pub use node::{BATCH, LeafBatch};
@@ -111,20 +110,20 @@ pub enum BuildError {
 }
 
 impl Tree {
-    /// Builds the tree of a mesh. Degenerate triangles are kept.
+    /// Builds the tree of a mesh. Degenerate triangles are kept. Without `layers`, the model of [`LayerPlan`] chooses them.
     ///
     /// # Errors
     /// The first fault of the input, in the order counts, indices, coordinates.
     pub fn build(
         vertices: &[Vec3],
         triangles: &[[u32; 3]],
-        options: &BuildOptions,
+        layers: Option<LayerPlan>,
     ) -> Result<Self, BuildError> {
-        if options.layers.is_some_and(|layers| layers.kdop_from_depth == Some(0)) {
+        if layers.is_some_and(|layers| layers.kdop_from_depth == Some(0)) {
             return Err(BuildError::KdopAtRoot);
         }
         check_mesh(vertices, triangles)?;
-        Ok(pack::pack(build::build(vertices, triangles, options), vertices, triangles, options))
+        Ok(pack::pack(build::build(vertices, triangles), vertices, triangles, layers))
     }
 
     /// The root, from which all nodes can be reached.

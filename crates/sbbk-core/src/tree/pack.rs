@@ -5,7 +5,7 @@
 
 use glamx::Vec3;
 
-use super::build::{BuildNode, BuildOptions, BuildTree, Content};
+use super::build::{BuildNode, BuildTree, Content};
 use super::node::{LeafBatch, Link, Pair};
 use super::{BuildStats, LayerPlan, Tree};
 use crate::volumes::{Kdop, SLABS, Sphere};
@@ -14,12 +14,12 @@ pub(super) fn pack(
     built: BuildTree,
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
-    options: &BuildOptions,
+    plan: Option<LayerPlan>,
 ) -> Tree {
     let (leaves, leaf_links) = leaves(&built, vertices, triangles);
-    let candidate = options.layers.unwrap_or(LayerPlan::CANDIDATE);
+    let candidate = plan.unwrap_or(LayerPlan::CANDIDATE);
     let kdops = kdops(&built.nodes, (&leaves, &leaf_links), candidate);
-    let (layers, kdop_cut) = match options.layers {
+    let (layers, kdop_cut) = match plan {
         Some(layers) => (layers, None),
         None => {
             let nodes = built.nodes.iter().zip(&kdops);

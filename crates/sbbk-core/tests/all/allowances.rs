@@ -71,16 +71,18 @@ impl Pair {
         Self::of(random, [one, [tip + 1.7 * w, tip - 0.3 * w, tip + n + 0.1 * u]], far)
     }
 
-    /// Each triangle is in its tree twice, so that the root has children.
+    /// Each triangle fills two leaves of its tree, so that the root has children.
     fn check(&self, layers: LayerPlan) {
-        let options = BuildOptions { layers: Some(layers), leaf_size: 1 };
-        let [tree1, tree2] = self.corners.map(|corners| {
-            let Soup { vertices, triangles } = Soup::apart([corners, corners].concat());
-            Tree::build(&vertices, &triangles, &options).unwrap()
-        });
+        let trees = self.corners.map(|corners| Soup::apart(corners.repeat(2 * BATCH)).tree(layers));
         let margin = (self.distance as f32).next_up();
-        let survivors = survivors(&tree1, &tree2, &self.pos12, margin);
-        assert_eq!(survivors, 4, "{margin}, {:?} at {:?}", self.corners, self.pos12);
+        let survivors = survivors(&trees[0], &trees[1], &self.pos12, margin);
+        assert_eq!(
+            survivors,
+            4 * BATCH * BATCH,
+            "{margin}, {:?} at {:?}",
+            self.corners,
+            self.pos12
+        );
     }
 }
 

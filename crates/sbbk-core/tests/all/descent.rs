@@ -24,7 +24,7 @@ pub fn survivors(
 }
 
 fn tree(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree {
-    check_tree(soup, &BuildOptions { layers: layers.into(), ..BuildOptions::default() })
+    check_tree(soup, layers.into())
 }
 
 fn truth(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> BTreeSet<(u32, u32)> {
@@ -128,12 +128,11 @@ fn descents_find_every_pair_either_way_round() {
 #[test]
 fn counts_of_complete_trees_are_the_papers() {
     for levels in 1..=6u32 {
-        let count = 1 << (levels - 1);
+        let count = BATCH << (levels - 1);
         // Equal triangles are halved by number: the tree is complete.
         let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
         let triangles = vec![[0, 1, 2]; count];
-        let options = BuildOptions { layers: Some(LayerPlan::SBBK), leaf_size: 1 };
-        let tree: Tree = Tree::build(&vertices, &triangles, &options).unwrap();
+        let tree = Tree::build(&vertices, &triangles, Some(LayerPlan::SBBK)).unwrap();
         assert_eq!(tree.stats().depth, levels - 1);
         let (pairs, counts) = survivors((&tree, &tree), &Pose3::IDENTITY, 0.0);
         assert_eq!(counts.aabb_tests, (4u64.pow(levels) - 1) / 3, "{levels} levels");

@@ -10,7 +10,7 @@ pub use sbbk_core::traverse::{
     DescentCounts, DescentScratch, MovingBody, PairFrame, Placement, Slack, SlackLimits, SlackPlan,
     TestedBox, descend,
 };
-pub use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Node, Tree};
+pub use sbbk_core::tree::{BATCH, LayerPlan, LeafBatch, Node, Tree};
 pub use sbbk_core::volumes::{Aabb, Kdop, SLABS, Sphere, directions};
 pub use std::collections::{BTreeMap, BTreeSet};
 pub use std::f32::consts::{FRAC_PI_2, PI, TAU};

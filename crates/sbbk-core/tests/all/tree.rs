@@ -1,16 +1,12 @@
 //! Trees hold each triangle once in valid volumes, and builds report faults of the input.
 
 use crate::prelude::*;
-use sbbk_core::tree::{BATCH, BuildError, BuildStats};
-
-fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {
-    BuildOptions { layers: Some(LayerPlan { sphere_root: true, kdop_from_depth }), leaf_size }
-}
+use sbbk_core::tree::{BuildError, BuildStats};
 
 /// Builds a tree and walks over all its nodes. Would catch a triangle that is lost or in two leaves,
 /// and a volume of the wrong layer or with something outside. Also catches nodes out of reach.
-pub fn check(soup: &Soup, options: &BuildOptions) -> Tree {
-    let tree = Tree::build(&soup.vertices, &soup.triangles, options).unwrap();
+pub fn check(soup: &Soup, plan: Option<LayerPlan>) -> Tree {
+    let tree = soup.tree(plan);
     assert_eq!(tree.triangle_count() as usize, soup.triangles.len());
     let BuildStats { depth, layers, bytes, .. } = *tree.stats();
     assert_eq!(tree.sphere().is_some(), layers.sphere_root);
@@ -32,7 +28,7 @@ pub fn check(soup: &Soup, options: &BuildOptions) -> Tree {
         }
         leaves += 1;
         let leaf = node.leaf().expect("no children");
-        assert!((1..=options.leaf_size.clamp(1, BATCH)).contains(&leaf.count()));
+        assert!((1..=BATCH).contains(&leaf.count()));
         for (lane, &triangle) in leaf.triangles().iter().enumerate() {
             assert!(!std::mem::replace(&mut is_found[triangle as usize], true), "found twice");
             let corners = soup.triangles[triangle as usize].map(|v| soup.vertices[v as usize]);
@@ -57,19 +53,18 @@ pub fn check(soup: &Soup, options: &BuildOptions) -> Tree {
 #[test]
 fn trees_of_all_small_sizes_are_valid() {
     let mut random = Random(21);
-    for count in 1..=70 {
-        for leaf_size in 1..=BATCH {
-            let soup = soup(&mut random, count, 0.3);
-            check(&soup, &options(Some(1 + count % 5), leaf_size));
-            check(&soup, &options(None, leaf_size));
-        }
+    for count in 1..=280 {
+        let soup = soup(&mut random, count, 0.3);
+        let kdop_from_depth = Some(1 + count % 5);
+        check(&soup, Some(LayerPlan { sphere_root: true, kdop_from_depth }));
+        check(&soup, Some(LayerPlan { sphere_root: true, kdop_from_depth: None }));
     }
 }
 
 #[test]
 fn large_tree_is_valid_and_shallow() {
     let ball = bumpy_ball(60, 0.1);
-    let tree = check(&ball, &BuildOptions::default());
+    let tree = check(&ball, None);
     assert!(ball.triangles.len() > 14_000 && tree.stats().depth < 25, "{:?}", tree.stats());
 }
 
@@ -99,7 +94,7 @@ fn flat_meshes_along_the_axes_get_boxes_and_others_kdops() {
         for (size, place) in [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 100.0)] {
             let vertices = soup.vertices.iter().map(|v| size * *v + Vec3::splat(place)).collect();
             let soup = Soup { vertices, triangles: soup.triangles.clone() };
-            let stats = *check(&soup, &BuildOptions::default()).stats();
+            let stats = *check(&soup, None).stats();
             let found = stats.kdop_cut.expect("no plan was given");
             assert!(cut.contains(&found), "{found} is not in {cut:?}");
             assert_eq!(stats.layers, LayerPlan { sphere_root: true, kdop_from_depth });
@@ -111,11 +106,11 @@ fn flat_meshes_along_the_axes_get_boxes_and_others_kdops() {
 fn a_chosen_tree_is_the_tree_of_its_plan() {
     let mut random = Random(24);
     for soup in [cube(7), bumpy_ball(9, 0.1), soup(&mut random, 300, 0.1)] {
-        let chosen = check(&soup, &BuildOptions::default());
-        let again = check(&soup, &BuildOptions::default());
+        let chosen = check(&soup, None);
+        let again = check(&soup, None);
         assert_eq!(format!("{chosen:?}"), format!("{again:?}"));
         let layers = Some(chosen.stats().layers);
-        let told = check(&soup, &BuildOptions { layers, ..BuildOptions::default() });
+        let told = check(&soup, layers);
         assert_eq!(told.stats().kdop_cut, None);
         let mut expected = *told.stats();
         expected.kdop_cut = chosen.stats().kdop_cut;
@@ -128,7 +123,7 @@ fn a_chosen_tree_is_the_tree_of_its_plan() {
 fn meshes_without_finite_area_get_boxes() {
     for size in [0.0, 3e38] {
         let corner = |i: u32| size * Vec3::new(i as f32 / 300.0, 0.0, (i % 2) as f32);
-        let tree = check(&Soup::apart((0..300).map(corner)), &BuildOptions::default());
+        let tree = check(&Soup::apart((0..300).map(corner)), None);
         assert_eq!(tree.stats().layers.kdop_from_depth, None, "{:?}", tree.stats().kdop_cut);
     }
 }
@@ -138,7 +133,7 @@ fn meshes_without_finite_area_get_boxes() {
 fn equal_triangles_make_a_balanced_tree() {
     let soup =
         Soup { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]; 4096] };
-    assert_eq!(check(&soup, &options(Some(4), 1)).stats().depth, 12);
+    assert_eq!(check(&soup, None).stats().depth, 10);
 }
 
 /// Would catch splits by cost that take one triangle from the rest, level after level.
@@ -166,7 +161,7 @@ fn trees_are_never_deep() {
         (0.999, 1, 0.0),
     ] {
         let soup = chain(3000, factor, axes, width);
-        let depth = check(&soup, &options(Some(4), 1)).stats().depth;
+        let depth = check(&soup, Some(LayerPlan::SBBK)).stats().depth;
         assert!(depth <= 64 + 12, "{depth} levels: {factor} {axes} {width}");
         deepest = deepest.max(depth);
     }
@@ -191,7 +186,7 @@ fn the_ball_around_a_box_holds_its_corners() {
         let triangles = (0..6).map(|i| [i, i + 1, i + 2]).collect();
         let soup = Soup { vertices, triangles };
         let layers = Some(LayerPlan::AABB_ONLY);
-        let ball = check(&soup, &BuildOptions { layers, leaf_size: 4 }).bounding_ball();
+        let ball = check(&soup, layers).bounding_ball();
         for vertex in soup.vertices {
             let distance = (vertex.as_dvec3() - ball.centre.as_dvec3()).length();
             assert!(distance <= f64::from(ball.radius), "{vertex} is outside of {ball:?}");
@@ -199,20 +194,11 @@ fn the_ball_around_a_box_holds_its_corners() {
     }
 }
 
-#[test]
-fn leaf_sizes_are_clamped() {
-    let ball = bumpy_ball(4, 0.1);
-    for (leaf_size, clamped) in [(0, 1), (9, BATCH), (usize::MAX, BATCH)] {
-        let bytes = |size| check(&ball, &options(Some(4), size)).stats().bytes;
-        assert_eq!(bytes(leaf_size), bytes(clamped));
-    }
-}
-
 /// A vertex that no triangle uses widens no volume.
 #[test]
 fn unused_vertices_do_not_count() {
     let mut ball = bumpy_ball(6, 0.1);
-    let radius = |ball: &Soup| check(ball, &options(Some(4), 4)).sphere().unwrap().radius;
+    let radius = |ball: &Soup| check(ball, None).sphere().unwrap().radius;
     // The ball's own unused vertices, at the poles, are in its place.
     let before = radius(&ball);
     ball.vertices.push(Vec3::splat(100.0));
@@ -226,29 +212,28 @@ fn degenerate_triangles_are_kept() {
     let mut soup = lattice_soup(&mut random, 200, 2);
     soup.triangles.push([0, 0, 0]);
     soup.triangles.push([0, 1, 0]);
-    check(&soup, &BuildOptions::default());
+    check(&soup, None);
     for vertex in &mut soup.vertices {
         *vertex *= random.range(0.0, 1.0).powi(40) * 1e5;
     }
-    check(&soup, &BuildOptions::default());
+    check(&soup, None);
 }
 
 #[test]
 fn faults_are_reported_with_their_place() {
     let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(0.0, f32::NAN, 0.0)];
-    let build = |triangles: &[[u32; 3]], options: &BuildOptions| {
-        Tree::build(&vertices, triangles, options).err()
-    };
-    let fine = BuildOptions::default();
-    assert_eq!(build(&[], &fine), Some(BuildError::NoTriangles));
+    let build = |triangles: &[[u32; 3]]| Tree::build(&vertices, triangles, None).err();
+    assert_eq!(build(&[]), Some(BuildError::NoTriangles));
     assert_eq!(
-        build(&[[0, 1, 2], [0, 4, 2]], &fine),
+        build(&[[0, 1, 2], [0, 4, 2]]),
         Some(BuildError::IndexOutOfRange { triangle: 1, vertex: 4, vertex_count: 4 })
     );
-    let nan = build(&[[0, 1, 3]], &fine).expect("a NaN vertex");
+    let nan = build(&[[0, 1, 3]]).expect("a NaN vertex");
     assert!(matches!(nan, BuildError::NotFinite { vertex: 3, .. }));
     assert_eq!(nan.to_string(), "vertex 3 is not finite: (0, NaN, 0)");
-    assert_eq!(build(&[[0, 1, 2]], &options(Some(0), 4)), Some(BuildError::KdopAtRoot));
+    let plan = LayerPlan { kdop_from_depth: Some(0), ..LayerPlan::SBBK };
+    let kdop_at_root = Tree::build(&vertices, &[[0, 1, 2]], Some(plan)).err();
+    assert_eq!(kdop_at_root, Some(BuildError::KdopAtRoot));
     // A bad vertex that no triangle uses does no harm.
-    assert_eq!(build(&[[0, 1, 2]], &fine), None);
+    assert_eq!(build(&[[0, 1, 2]]), None);
 }

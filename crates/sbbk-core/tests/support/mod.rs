@@ -7,7 +7,7 @@ use glamx::{DVec3, Pose3, Quat, Vec3};
 use sbbk_core::field::{FieldFrame, FieldLeaves, FieldTriangle, HeightGrid};
 use sbbk_core::surface::{Facets, RayTriangles, Surface};
 use sbbk_core::traverse::{Counters, DescentCounts, TestedBox};
-use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
+use sbbk_core::tree::{LayerPlan, Tree};
 
 /// A mesh as the tree takes it.
 #[derive(Clone, Debug)]
@@ -26,8 +26,7 @@ impl Soup {
 
     /// The tree of a plan, or of the plan that is chosen for the mesh.
     pub fn tree(&self, layers: impl Into<Option<LayerPlan>>) -> Tree {
-        let options = BuildOptions { layers: layers.into(), ..BuildOptions::default() };
-        Tree::build(&self.vertices, &self.triangles, &options).expect("the mesh is valid")
+        Tree::build(&self.vertices, &self.triangles, layers.into()).expect("the mesh is valid")
     }
 
     pub fn surface(&self) -> Surface {

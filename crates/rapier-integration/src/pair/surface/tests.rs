@@ -2,7 +2,6 @@ use parry3d::math::{Pose, Vector};
 use parry3d::shape::{Ball, SharedShape, TriMesh};
 use sbbk_core::contact::contact;
 use sbbk_core::traverse::DescentCounts;
-use sbbk_core::tree::BuildOptions;
 
 use super::*;
 use crate::SbbkConfig;
@@ -16,7 +15,7 @@ use crate::pair::triangles::{MeshPair, ShapeView};
 /// catch contacts that [`TriangleShapes::lateral_culling`] loses.
 #[test]
 fn triangles_beside_each_other_pass_by() {
-    let store = MeshStore::new(BuildOptions::default(), 1 << 30);
+    let store = MeshStore::new(None, 1 << 30);
     let shapes = [20, 30].map(|rows| {
         let (mut vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
         for (i, vertex) in (0_u32..).zip(&mut vertices) {
