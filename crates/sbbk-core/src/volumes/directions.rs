@@ -41,19 +41,6 @@ pub const DIRECTIONS: [Vec3; SLABS] = [
     d(0, 1, -1),
 ];
 
-/// The three directions that span each cone of sorted components.
-const CONES: [[Member; 3]; 2] =
-    [[[1, 0, 0], [1, 1, 0], [1, 0, 1]], [[0, 1, 1], [1, 1, 0], [1, 0, 1]]];
-
-/// The three slabs of each [`code`].
-const CONE_SLABS: [[Slab; 3]; 128] = cone_slabs();
-
-/// A direction of a slab, or its opposite.
-type Member = [i8; 3];
-
-/// Index of a slab, and -1 where its opposite direction is meant.
-type Slab = (u8, i8);
-
 const fn d(x: i8, y: i8, z: i8) -> Vec3 {
     Vec3::new(x as f32, y as f32, z as f32)
 }
@@ -74,76 +61,45 @@ where
 #[inline]
 pub fn correspondence(direction: DVec3) -> [(usize, f64); 3] {
     let magnitude = direction.abs();
-    let (cone, coefficients) = coefficients(descending(magnitude));
-    let slabs = &CONE_SLABS[code(direction, magnitude, cone)];
+    let negative = direction.to_array().map(|component| usize::from(component < 0.0));
+    let [x, y, z] = descending_axes(magnitude);
+    let (is_beyond, coefficients) = coefficients(descending(magnitude));
+    let first = if is_beyond { edge(negative, y, z) } else { (x, negative[x]) };
+    let slabs = [first, edge(negative, x, y), edge(negative, x, z)];
     let term = |i: usize| {
-        let (slab, sign) = slabs[i];
-        (usize::from(slab), f64::from(sign) * coefficients[i])
+        let (slab, is_opposite) = slabs[i];
+        (slab, [1.0, -1.0][is_opposite] * coefficients[i])
     };
     [term(0), term(1), term(2)]
 }
 
-/// The cone that contains the direction with components `x >= y >= z >= 0`, and the coefficients
-/// of its members.
+/// The slab of an edge of the cube in the plane of two axes, and 1 where its opposite direction is
+/// meant. `negative` is 1 for axes along which the edge lies below the middle.
 #[inline(always)]
-fn coefficients(s: DVec3) -> (usize, [f64; 3]) {
-    // Beyond the face between the cones, half of the deficit goes to the two shared members.
+fn edge(negative: [usize; 3], one: usize, other: usize) -> (usize, usize) {
+    let differ = negative[one] ^ negative[other];
+    (1 + 2 * (one + other) + differ, negative[one.min(other)])
+}
+
+/// True beyond the face between the cones, and the coefficients of the direction with components
+/// `x >= y >= z >= 0`.
+#[inline(always)]
+fn coefficients(s: DVec3) -> (bool, [f64; 3]) {
+    // There, half of the deficit goes to the two shared members.
     let beyond = s.x - s.y - s.z;
     let half = 0.5 * smaller(beyond, 0.0);
-    (usize::from(beyond < 0.0), [larger(beyond, -0.5 * beyond), s.y + half, s.z + half])
+    (beyond < 0.0, [larger(beyond, -0.5 * beyond), s.y + half, s.z + half])
 }
 
-/// The order of a direction's components, their signs and its cone, as bits.
+/// The axes from the largest component to the smallest.
 #[inline(always)]
-fn code(direction: DVec3, magnitude: DVec3, cone: usize) -> usize {
-    let DVec3 { x, y, z } = magnitude;
-    let order = [x >= y, y >= z, x >= z];
-    let negative = direction.to_array().map(|component| component < 0.0);
-    let bits = order.into_iter().chain(negative).enumerate();
-    bits.fold(cone << 6, |code, (i, bit)| code | usize::from(bit) << i)
-}
-
-/// Fills the table of all codes. Codes of impossible orders are never looked up.
-const fn cone_slabs() -> [[Slab; 3]; 128] {
-    let mut table = [[(0, 0); 3]; 128];
-    let mut code = 0;
-    while code < table.len() {
-        let [x_before_y, y_before_z, x_before_z] = [code & 1, code >> 1 & 1, code >> 2 & 1];
-        // Rank of each component in descending order.
-        let ranks =
-            [2 - x_before_y - x_before_z, 1 + x_before_y - y_before_z, y_before_z + x_before_z];
-        let mut i = 0;
-        while i < 3 {
-            let mut member = [0; 3];
-            let mut axis = 0;
-            while axis < 3 {
-                let sign = 1 - 2 * (code >> (3 + axis) & 1) as i8;
-                member[axis] = sign * CONES[code >> 6][i][ranks[axis]];
-                axis += 1;
-            }
-            table[code][i] = slab_of(member);
-            i += 1;
-        }
-        code += 1;
-    }
-    table
-}
-
-/// The slab of a member; slab 0 with sign 0 if none has this direction.
-const fn slab_of([x, y, z]: Member) -> Slab {
-    let mut slab = 0;
-    while slab < SLABS {
-        let d = DIRECTIONS[slab];
-        let [dx, dy, dz] = [d.x as i8, d.y as i8, d.z as i8];
-        if dx == x && dy == y && dz == z {
-            return (slab as u8, 1);
-        }
-        if dx == -x && dy == -y && dz == -z {
-            return (slab as u8, -1);
-        }
-        slab += 1;
-    }
-    (0, 0)
+fn descending_axes(DVec3 { x, y, z }: DVec3) -> [usize; 3] {
+    let [x_before_y, y_before_z, x_before_z] = [x >= y, y >= z, x >= z].map(usize::from);
+    let mut axes = [0; 3];
+    axes[2 - x_before_y - x_before_z] = 0;
+    axes[1 + x_before_y - y_before_z] = 1;
+    axes[y_before_z + x_before_z] = 2;
+    axes
 }
 
 /// The components from the largest to the smallest. Any order if one is NaN.
