@@ -6,7 +6,7 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 
 use super::facets::{Facets, Wedge, half_edge, previous};
-use super::memo::PlaceMemo;
+use super::memo::{Memo, key};
 use super::one_ring::Around;
 use crate::contact::Feature;
 use crate::simd::each;
@@ -27,7 +27,7 @@ impl<F: Facets> Around<F> {
         let place = self.place(triangle, feature, Some(place));
         let (triangle, feature, ring) = self.first_of_ring(triangle, feature);
         let find = || self.ends_at(triangle, feature, place);
-        PlaceMemo::is_border(self.facets.memo(), ring, place, find)
+        Memo::answer(self.facets.memo().map(|memo| &memo.borders), (ring, key(place)), find)
     }
 
     /// Returns true if an edge without a twin is a border at a place, or if one at a vertex is. Also returns the number of

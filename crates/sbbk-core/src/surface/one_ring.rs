@@ -2,13 +2,14 @@
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
 use super::crowd::{Crowd, Found};
 use super::facets::{Facets, Wedge, half_edge, visit_ring};
-use super::memo::PlaceMemo;
+use super::memo::{PlaceMemo, key};
 use super::sides::Side;
 use super::slopes::{Bend, FLAT, Heights, LONG, RISE, RISE_TO_FACE, Signs, Slopes, angle};
 use super::triangle::{area_vector, clip, longest_side, seam, touches};
@@ -225,7 +226,7 @@ impl<F: Facets> Around<F> {
         }
         let (mut first, mut ring) = (half_edge(triangle, feature), PlaceMemo::SHORT);
         let memo = self.facets.memo();
-        if let Some(known) = memo.and_then(|memo| memo.first_of_ring(first)) {
+        if let Some(known) = memo.and_then(|memo| memo.rings.get(&first)) {
             (first, ring) = (known, known);
         } else {
             let mut count = 0;
@@ -236,7 +237,10 @@ impl<F: Facets> Around<F> {
             });
             if count > LONG {
                 ring = first;
-                memo.inspect(|memo| memo.keep_ring(self.ring(triangle, feature).0, first));
+                if let Some(memo) = memo {
+                    let (ring, _) = self.ring(triangle, feature);
+                    ring.into_iter().for_each(|half_edge| memo.rings.insert(half_edge, first));
+                }
             }
         }
         (first / 3, Feature::Vertex((first % 3) as u8), ring)
@@ -253,8 +257,8 @@ impl<F: Facets> Around<F> {
     ) -> Slopes {
         let place = self.place(triangle, feature, place);
         let (triangle, feature, ring) = self.first_of_ring(triangle, feature);
-        let (memo, key) = (self.facets.memo(), (ring, self.is_solid()));
-        if let Some(crowd) = memo.and_then(|memo| memo.crowd(key, place)) {
+        let (memo, key) = (self.facets.memo(), (ring, self.is_solid(), key(place)));
+        if let Some(crowd) = memo.and_then(|memo| memo.crowds.get(&key)) {
             return crowd.slopes(direction);
         }
         let mut slopes = Slopes::default();
@@ -265,7 +269,7 @@ impl<F: Facets> Around<F> {
         }
         let crowd = self.crowd(triangle, feature, place);
         let slopes = crowd.slopes(direction);
-        memo.inspect(|memo| memo.keep_crowd(key, place, crowd));
+        memo.inspect(|memo| memo.crowds.insert(key, Arc::new(crowd)));
         slopes
     }
 

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use glamx::DVec3;
 
 use super::Surface;
-use super::memo::PlaceMemo;
+use super::memo::{Memo, PlaceMemo};
 use super::rays::{Hit, Hits, RayTriangles, TIE, direction, hit, shortest, winding};
 use super::triangle::{area_vector, depth_within, longest_side, meeting};
 use super::twins::Components;
@@ -237,8 +237,8 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
             return true;
         }
         let before = self.work.get();
-        let find = || (is_wall(), self.work.get() - before);
-        let (is_wall, work) = self.memo.is_wall(triangle, find);
+        let find = || ((is_wall(), self.work.get() - before), usize::MAX);
+        let (is_wall, work) = Memo::answer(Some(&self.memo.walls), triangle, find);
         let work = if self.limit.is_shared { work } else { self.work.get() - before };
         self.left.set(self.left.get() - work);
         !is_wall
