@@ -31,10 +31,8 @@ pub use triangle::{area_vector, longest_side};
 pub use twins::{Place, hangs, is_flat, place, sides};
 
 use glamx::Vec3;
-use rustc_hash::FxHashMap;
 
-use crate::collections::CompactIndices;
-use twins::{Components, TriangleSet};
+use twins::Adjacency;
 
 /// Greatest number of triangles of a mesh whose kind follows from its edges if these are all paired. Rays also take its closed
 /// components as they are. Larger meshes take rays that need no paired edges.
@@ -49,12 +47,7 @@ pub const SMALL_COMPONENT: usize = 32;
 /// Takes 6 bytes a triangle, 12 for a mesh of more than 21,845 triangles.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    twins: CompactIndices,
-    hubs: FxHashMap<twins::Place, (u32, u32)>,
-    has_small_components: bool,
-    /// `None` above [`PAIRED`] triangles, where no component is known to be closed.
-    components: Option<Components>,
-    doubles: TriangleSet,
+    adjacency: Adjacency,
     kind: SurfaceKind,
 }
 
@@ -66,45 +59,45 @@ impl Surface {
     /// # Panics
     /// If a triangle has an index beyond the vertices.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
-        let twins::Adjacency { twins, hubs, has_small_components, components, doubles } =
-            twins::find(vertices, triangles);
-        let memo = &PlaceMemo::default();
-        let mesh = sides::RayMesh::new(rays, components.as_ref(), memo, sides::WallLimit::MESH);
+        let adjacency = twins::find(vertices, triangles);
+        let (components, memo) = (adjacency.components.as_ref(), &PlaceMemo::default());
+        let mesh = sides::RayMesh::new(rays, components, memo, sides::WallLimit::MESH);
         let kind = kinds::of_samples(&mesh);
-        Self { twins, hubs, has_small_components, components, doubles, kind }
+        Self { adjacency, kind }
     }
 
     /// True if other triangles have the contacts of a triangle. An earlier one may have the same corners, in either winding. A
     /// triangle without an area leaves its contacts to those at its sides. A point has none.
     #[inline]
     pub fn is_double(&self, triangle: u32) -> bool {
-        self.doubles.contains(triangle)
+        self.adjacency.doubles.contains(triangle)
     }
 
     /// True if there is a [double](Self::is_double).
     pub fn has_doubles(&self) -> bool {
-        !self.doubles.is_empty()
+        !self.adjacency.doubles.is_empty()
     }
 
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     #[inline]
     pub fn twin(&self, half_edge: u32) -> Option<u32> {
-        self.twins.get(half_edge)
+        self.adjacency.twins.get(half_edge)
     }
 
     /// The first triangle at a hub, a vertex of more than a thousand. Takes the corners of a triangle
     /// there. Boxes at a hub overlap, so rays from each triangle would take quadratic time.
     pub fn first_at_hub(&self, corners: [Vec3; 3]) -> Option<u32> {
-        if self.hubs.is_empty() {
+        let hubs = &self.adjacency.hubs;
+        if hubs.is_empty() {
             return None;
         }
-        let hubs = corners.into_iter().filter_map(|corner| self.hubs.get(&twins::place(corner)));
+        let hubs = corners.into_iter().filter_map(|corner| hubs.get(&twins::place(corner)));
         hubs.max_by_key(|(count, _)| count).map(|(_, first)| *first)
     }
 
     /// True if the components of the mesh are [small](SMALL_COMPONENT) on average.
     pub fn has_small_components(&self) -> bool {
-        self.has_small_components
+        self.adjacency.has_small_components
     }
 
     /// The kind of surface.
@@ -114,11 +107,11 @@ impl Surface {
 
     /// Memory of this value in bytes, without the mesh.
     pub fn bytes(&self) -> usize {
-        let hubs = size_of::<(twins::Place, (u32, u32))>() * self.hubs.capacity();
+        let Adjacency { twins, hubs, components, doubles, .. } = &self.adjacency;
         size_of::<Self>()
-            + self.twins.bytes()
-            + self.components.as_ref().map_or(0, |components| components.open.bytes())
-            + self.doubles.bytes()
-            + hubs
+            + twins.bytes()
+            + components.as_ref().map_or(0, |components| components.open.bytes())
+            + doubles.bytes()
+            + size_of::<(Place, (u32, u32))>() * hubs.capacity()
     }
 }

@@ -162,7 +162,7 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
     /// Rays for one side or one point. They use the closed components of a known surface.
     fn with(triangles: &'a T, surface: Option<&'a Surface>, memo: &'a PlaceMemo) -> Self {
         let limit = if surface.is_some() { WallLimit::SIDE } else { WallLimit::UNKNOWN };
-        let components = surface.and_then(|surface| surface.components.as_ref());
+        let components = surface.and_then(|surface| surface.adjacency.components.as_ref());
         Self::new(triangles, components, memo, limit)
     }
 

@@ -16,6 +16,7 @@ const NONE: u32 = u32::MAX;
 const HUB: u32 = 1024;
 
 /// Adjacency of a mesh.
+#[derive(Clone, Debug)]
 pub(super) struct Adjacency {
     /// The twin of each half-edge, if there is exactly one besides doubles. Doubles have none.
     pub(super) twins: CompactIndices,
@@ -23,7 +24,7 @@ pub(super) struct Adjacency {
     pub(super) hubs: FxHashMap<Place, (u32, u32)>,
     /// True if closed components have few triangles on average.
     pub(super) has_small_components: bool,
-    /// `None` for a mesh of more than [`PAIRED`] triangles.
+    /// `None` above [`PAIRED`] triangles, where no component is known to be closed.
     pub(super) components: Option<Components>,
     /// Triangles with the corners of an earlier one, in either winding, and slivers.
     pub(super) doubles: TriangleSet,
