@@ -1,13 +1,12 @@
-//! Eight boxes or spheres in lanes, and the test of one against all eight.
+//! Eight boxes in lanes, and the test of one against all eight.
 
 use glamx::Vec3;
 use wide::f32x8;
 
-use super::{ABSOLUTE_SLACK, RELATIVE_SLACK, Reach};
 use crate::simd::each;
 use crate::volumes::Aabb;
 
-/// Number of boxes or spheres tested at once.
+/// Number of boxes tested at once.
 pub(super) const LANE_COUNT: usize = 8;
 
 /// A float for each lane.
@@ -71,34 +70,5 @@ impl BoxLanes {
         (0..3)
             .map(|axis| (self.max[axis] - self.min[axis]).fast_max(Lanes::ZERO))
             .fold(Lanes::ZERO, |sum, side| sum + side)
-    }
-}
-
-/// Eight spheres, coordinate by coordinate. Unused lanes hold anything.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SphereLanes {
-    centre: [Lanes; 3],
-    radius: Lanes,
-}
-
-impl SphereLanes {
-    pub(super) const ZERO: Self = Self { centre: [Lanes::ZERO; 3], radius: Lanes::ZERO };
-
-    #[inline]
-    pub(super) fn set(&mut self, lane: usize, reach: &Reach) {
-        for axis in 0..3 {
-            self.centre[axis].as_mut_array()[lane] = reach.centre[axis];
-        }
-        self.radius.as_mut_array()[lane] = reach.radius;
-    }
-
-    /// The lanes that overlap the sphere in `lane` of `other`: [`Reach::overlaps`], lane by lane.
-    #[inline]
-    pub(super) fn overlaps(&self, other: &Self, lane: usize) -> LaneMask {
-        let [x, y, z] = [0, 1, 2]
-            .map(|axis| self.centre[axis] - Lanes::splat(other.centre[axis].as_array()[lane]));
-        let reach = self.radius + Lanes::splat(other.radius.as_array()[lane]);
-        let limit = reach * reach * Lanes::splat(RELATIVE_SLACK) + Lanes::splat(ABSOLUTE_SLACK);
-        (x * x + y * y + z * z).simd_le(limit).to_bitmask() as LaneMask
     }
 }

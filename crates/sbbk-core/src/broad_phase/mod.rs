@@ -92,15 +92,16 @@ impl Reach {
         Self { aabb: Aabb { min, max: max + margin }, centre, radius: radius + 0.5 * margin }
     }
 
-    /// The expressions of [`lanes`] for one pair.
     fn overlaps(&self, other: &Self) -> bool {
+        // The test of the tree, for one pair.
+        let (one, two) = (self.aabb, other.aabb);
+        one.min.cmple(two.max).all() && two.min.cmple(one.max).all() && self.spheres_overlap(other)
+    }
+
+    fn spheres_overlap(&self, other: &Self) -> bool {
         let Vec3 { x, y, z } = self.centre - other.centre;
         let reach = self.radius + other.radius;
-        let limit = reach * reach * RELATIVE_SLACK + ABSOLUTE_SLACK;
-        let (one, two) = (self.aabb, other.aabb);
-        one.min.cmple(two.max).all()
-            && two.min.cmple(one.max).all()
-            && x * x + y * y + z * z <= limit
+        x * x + y * y + z * z <= reach * reach * RELATIVE_SLACK + ABSOLUTE_SLACK
     }
 }
 
@@ -142,7 +143,7 @@ impl BroadPhase {
                 self.changed[object] = reach != self.reaches[object];
                 if self.changed[object] {
                     self.reaches[object] = reach;
-                    self.tree.update(object, &reach);
+                    self.tree.update(object, &reach.aabb);
                 }
             }
             let changed = &self.changed;
@@ -151,8 +152,12 @@ impl BroadPhase {
         if is_new || self.tree.refit() {
             self.tree.pack(&self.reaches, &self.changed);
         }
-        let pairs = &mut self.pairs;
-        self.tree.take_pairs(|one, other| pairs.push([one.min(other), one.max(other)]));
+        let (reaches, pairs) = (&self.reaches, &mut self.pairs);
+        self.tree.take_pairs(|one, other| {
+            if reaches[one as usize].spheres_overlap(&reaches[other as usize]) {
+                pairs.push([one.min(other), one.max(other)]);
+            }
+        });
         &self.pairs
     }
 }

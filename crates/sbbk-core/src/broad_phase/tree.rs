@@ -12,7 +12,7 @@
 //! when too many boxes have grown too much.
 
 use super::Reach;
-use super::lanes::{BoxLanes, LANE_COUNT, LaneMask, Lanes, SphereLanes};
+use super::lanes::{BoxLanes, LANE_COUNT, LaneMask, Lanes};
 use crate::simd::bits;
 use crate::volumes::Aabb;
 
@@ -50,7 +50,6 @@ impl Level {
 pub(super) struct BlockTree {
     /// From the objects up; the last has at most one group.
     levels: Vec<Level>,
-    spheres: Vec<SphereLanes>,
     /// Object by rank, its place in the order.
     objects: Vec<u32>,
     /// Rank by object.
@@ -70,7 +69,7 @@ impl BlockTree {
         for rank in 0..self.objects.len() {
             let object = self.objects[rank] as usize;
             self.ranks[object] = rank as u32;
-            self.place(rank, &reaches[object], has_changed[object]);
+            self.levels[0].set(rank, &reaches[object].aabb, has_changed[object]);
         }
         self.refit_groups(|_| true);
         self.least_sides.clear();
@@ -81,8 +80,6 @@ impl BlockTree {
 
     fn reset_levels(&mut self) {
         let mut group_count = self.objects.len().div_ceil(LANE_COUNT);
-        self.spheres.clear();
-        self.spheres.resize(group_count, SphereLanes::ZERO);
         let mut depth = 0;
         loop {
             if depth == self.levels.len() {
@@ -98,14 +95,9 @@ impl BlockTree {
         self.levels.truncate(depth);
     }
 
-    fn place(&mut self, rank: usize, reach: &Reach, has_changed: bool) {
-        self.levels[0].set(rank, &reach.aabb, has_changed);
-        self.spheres[rank / LANE_COUNT].set(rank % LANE_COUNT, reach);
-    }
-
     /// Moves an object.
-    pub(super) fn update(&mut self, object: usize, reach: &Reach) {
-        self.place(self.ranks[object] as usize, reach, true);
+    pub(super) fn update(&mut self, object: usize, aabb: &Aabb) {
+        self.levels[0].set(self.ranks[object] as usize, aabb, true);
     }
 
     /// Fits the boxes of all nodes around the objects that changed. Returns true if packing is due.
@@ -135,8 +127,8 @@ impl BlockTree {
         }
     }
 
-    /// Reports each overlapping pair of objects of which at least one has changed, once. Then marks
-    /// all objects as unchanged.
+    /// Reports each pair of objects whose boxes overlap and of which at least one has changed, once. Then marks all
+    /// objects as unchanged.
     pub(super) fn take_pairs(&mut self, mut on_pair: impl FnMut(u32, u32)) {
         if !self.objects.is_empty() {
             self.descend(self.levels.len() - 1, [0, 0], &mut on_pair);
@@ -160,9 +152,6 @@ impl BlockTree {
                 // Each pair once; on level 0 no object with itself.
                 let first = lane1 + usize::from(level == 0);
                 lanes2 &= LaneMask::MAX.checked_shl(first as u32).unwrap_or(0);
-            }
-            if level == 0 && lanes2 != 0 {
-                lanes2 &= self.spheres[groups[1]].overlaps(&self.spheres[groups[0]], lane1);
             }
             for lane2 in bits(lanes2.into()) {
                 let [node1, node2] = [(groups[0], lane1), (groups[1], lane2)]
@@ -242,7 +231,7 @@ mod tests {
         let mut tree = BlockTree::default();
         tree.pack(&reaches, &[true; OBJECT_COUNT]);
         moved.iter().fold(tree.refit(), |_, moved| {
-            (0..OBJECT_COUNT).for_each(|i| tree.update(i, &cube(moved(i), size(i))));
+            (0..OBJECT_COUNT).for_each(|i| tree.update(i, &cube(moved(i), size(i)).aabb));
             tree.refit()
         })
     }
