@@ -90,11 +90,6 @@ impl FeaturePair {
         self.0 & Self::CROSSING != 0
     }
 
-    /// The pair with the triangles in the other order.
-    pub const fn swapped(self) -> Self {
-        Self(Self::new(self.feature2(), self.feature1()).0 | (self.0 & Self::CROSSING))
-    }
-
     /// Feature 1 in the low three bits, feature 2 in the next three, then whether they cross.
     pub const fn to_bits(self) -> u8 {
         self.0
@@ -123,13 +118,11 @@ mod tests {
         for (f1, f2) in features().flat_map(|f1| features().map(move |f2| (f1, f2))) {
             let pair = FeaturePair::new(f1, f2);
             assert_eq!((pair.feature1(), pair.feature2()), (f1, f2));
-            assert_eq!(pair.swapped(), FeaturePair::new(f2, f1));
             assert_eq!(FeaturePair::from_bits(pair.to_bits()), pair);
             assert_eq!(pair.to_bits() & !FeaturePair::MASK, 0);
             let crossing = pair.crossing();
             assert_eq!((crossing.feature1(), crossing.feature2()), (f1, f2));
             assert!(crossing.is_crossing() && !pair.is_crossing());
-            assert_eq!(crossing.swapped(), pair.swapped().crossing());
             assert!(seen.insert(pair) && seen.insert(crossing));
         }
         assert_eq!(seen.len(), 98);

@@ -154,8 +154,11 @@ fn closest_points_keep_the_features_of_their_triangles() {
     let corner = [at(1.0, 0.0), at(3.0, 1.0), at(3.0, -1.0)];
     let side = [at(3.0, 0.0), at(1.0, -1.0), at(1.0, 1.0)];
     for (right, feature2) in [(corner, Feature::Vertex(0)), (side, Feature::Edge(1))] {
-        let features = FeaturePair::new(Feature::Vertex(2), feature2);
-        for (t1, t2, features) in [(left, right, features), (right, left, features.swapped())] {
+        let corner = Feature::Vertex(2);
+        for (t1, t2, features) in [
+            (left, right, FeaturePair::new(corner, feature2)),
+            (right, left, FeaturePair::new(feature2, corner)),
+        ] {
             let mut points = ManifoldPoints::new();
             let found = contact(&t1, &t2, 2.0).unwrap();
             assert_eq!(found.features, features);
