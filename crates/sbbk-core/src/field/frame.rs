@@ -44,11 +44,8 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
     /// For a mesh at `placement` in the frame of the field. Triangles within `margin`, in either
     /// frame, will be found. A pose that is not finite is nowhere.
     pub fn new(field: &'a F, placement: &Placement, margin: f32) -> Self {
-        let rotation = placement.rotation;
-        let absolute =
-            DMat3::from_cols(rotation.x_axis.abs(), rotation.y_axis.abs(), rotation.z_axis.abs());
         let reach = f64::from(margin) * placement.scale().max(1.0) * (1.0 + 1e-12);
-        Self { field, placement: *placement, absolute, reach }
+        Self { field, placement: *placement, absolute: placement.rotation.abs(), reach }
     }
 
     /// Returns true if a triangle in a box of the mesh's frame may touch the field. Conservative.

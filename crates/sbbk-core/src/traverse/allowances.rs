@@ -1,7 +1,7 @@
 //! Comparisons of nodes in f32 against f64, at places where f32 rounds most. No bound exceeds the
 //! exact value, and rounding uses a fair share of each allowance.
 
-use glamx::{DMat3, DVec3, Pose3, Vec3};
+use glamx::{DVec3, Pose3, Vec3};
 use wide::f32x4;
 
 use super::expand::Compare;
@@ -99,11 +99,10 @@ impl Pair {
         };
         let ((c1, e1), (c2, e2)) =
             (read(children1.boxes, lane >> 1), read(children2.boxes, lane & 1));
-        let absolute = |m: DMat3| DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs());
         let offset = placement.rotation * c2 + (placement.translation - c1);
         let boxes = [
-            offset.abs() - (e1 + absolute(placement.rotation) * e2),
-            (placement.inverse * offset).abs() - (e2 + absolute(placement.inverse) * e1),
+            offset.abs() - (e1 + placement.rotation.abs() * e2),
+            (placement.inverse * offset).abs() - (e2 + placement.inverse.abs() * e1),
         ];
         let (kdops1, kdops2) = (children1.kdops.unwrap(), children2.kdops.unwrap());
         let slabs = std::array::from_fn(|slab| {
