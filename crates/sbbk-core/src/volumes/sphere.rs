@@ -61,18 +61,12 @@ impl Sphere {
             sphere.radius = 0.99 * best.radius * (1.0 - 0.1 / (step + 1) as f32);
             sphere = sphere.grown_to(point, distance);
         }
-        Self::reaching(best.centre, best.radius)
+        Self { radius: best.radius * (1.0 + gamma(6)) + UNDERFLOW, ..best }
     }
 
     /// Returns true if `point` is in the sphere, computed in f64. Fitted points are.
     pub fn contains(&self, point: Vec3) -> bool {
         self.centre.as_dvec3().distance(point.as_dvec3()) <= f64::from(self.radius)
-    }
-
-    /// The sphere that contains all points whose computed distance from `centre` is `distance` or
-    /// less.
-    pub(crate) fn reaching(centre: Vec3, distance: f32) -> Self {
-        Self { centre, radius: distance * (1.0 + gamma(6)) + UNDERFLOW }
     }
 
     /// The farthest of `points` from the centre, and its distance.
