@@ -98,7 +98,7 @@ impl Front {
         visit: impl FnMut(&LeafBatch, &LeafBatch),
     ) {
         counters.count(|counts| counts.sphere_tests += 1);
-        if !frame.placement().is_finite() || !frame.spheres_meet(trees.0, trees.1) {
+        if !frame.placement.is_finite() || !frame.spheres_meet(trees.0, trees.1) {
             self.clear();
             return;
         }

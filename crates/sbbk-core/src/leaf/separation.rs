@@ -72,7 +72,7 @@ pub(super) struct LeafFrame {
 
 impl LeafFrame {
     pub(super) fn new(frame: &PairFrame) -> Self {
-        Self::at(frame.placement()).with_margin(frame.margin(), frame.rounding[0])
+        Self::at(&frame.placement).with_margin(frame.margin, frame.rounding[0])
     }
 
     /// Without a margin.

@@ -15,8 +15,10 @@ use crate::volumes::rounding::gamma;
 /// is not finite no test passes. Any finite margin is valid.
 #[derive(Clone, Debug)]
 pub struct PairFrame {
+    /// Where mesh 2 is in the frame of mesh 1.
     pub(crate) placement: Placement,
-    margin: f32,
+    /// The distance up to which pairs are found.
+    pub(crate) margin: f32,
     /// Rounding of a comparison of boxes, in frame 1 and in frame 2.
     pub(crate) rounding: [f32; 2],
     /// The margin plus the rounding, in frame 1 and in frame 2.
@@ -116,16 +118,6 @@ impl PairFrame {
             to_frame2: Rows::new(inverse),
             correspondence: None,
         }
-    }
-
-    /// The distance up to which pairs are found.
-    pub fn margin(&self) -> f32 {
-        self.margin
-    }
-
-    /// Where mesh 2 is in the frame of mesh 1.
-    pub fn placement(&self) -> &Placement {
-        &self.placement
     }
 
     /// Returns true if the root spheres come within the margin, or if a tree has none.
