@@ -33,7 +33,7 @@ use crate::traverse::{Along, Compare, NodeLanes, PairFrame, Placement, Toward, w
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::rounding::gamma;
 
-use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::seek::{FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, TrianglePair};
 
 /// The definition of an impact.
@@ -107,7 +107,8 @@ pub fn cast(
     // Only earlier impacts matter.
     let (mut latest, mut first) = (f64::from(max_time), None::<Cast>);
     let velocity = velocity.as_dvec3();
-    seek(trees, &mut sweep, scratch, |sweep, batch1, batch2| {
+    let limit = |sweep: &Sweep<'_>| sweep.limit;
+    seek(trees, &mut sweep, limit, scratch, |sweep, batch1, batch2| {
         let are_late = |first: &FirstNormal| first.are_late(latest, batch1, batch2);
         if sweep.first.as_ref().is_some_and(are_late) {
             return;
@@ -378,12 +379,5 @@ impl Compare for Sweep<'_> {
         }
         let times = self.times(nodes).fast_max(along);
         within(self.limit, times, nodes.lanes)
-    }
-}
-
-impl Bounds for Sweep<'_> {
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.limit
     }
 }

@@ -63,7 +63,8 @@ pub fn meeting(
     let test = LeafTest::new(&frame);
     let mut overlap = OrderedOverlap { frame: &mut frame, limit: f32::INFINITY };
     let mut found = None;
-    seek(trees, &mut overlap, scratch, |overlap, batch1, batch2| {
+    let limit = |overlap: &OrderedOverlap<'_>| overlap.limit;
+    seek(trees, &mut overlap, limit, scratch, |overlap, batch1, batch2| {
         test.survivors(batch1, batch2, |lane1, lane2| {
             if found.is_none() {
                 let (one, two) = (batch1.triangle(lane1), batch2.triangle(lane2));

@@ -89,7 +89,8 @@ pub(super) fn search_except(
         let (leaf1, leaf2) = near_leaves(trees, gaps.frame);
         search.leaves(gaps, leaf1, leaf2);
     }
-    seek(trees, gaps, scratch, |gaps, leaf1, leaf2| search.leaves(gaps, leaf1, leaf2));
+    let limit = |gaps: &SignedGaps<'_>| gaps.limit;
+    seek(trees, gaps, limit, scratch, |gaps, leaf1, leaf2| search.leaves(gaps, leaf1, leaf2));
     (search.found, [gaps.count, search.count])
 }
 

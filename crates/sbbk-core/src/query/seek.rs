@@ -6,30 +6,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::traverse::{
-    Compare, DescentScratch, OrderedOverlap, SignedGaps, SlotPair, expand, leaves_at,
-};
+use crate::traverse::{Compare, DescentScratch, SlotPair, expand, leaves_at};
 use crate::tree::{LeafBatch, Slot, Tree};
-
-/// Lower bounds of pairs of nodes.
-pub(super) trait Bounds: Compare<Key = f32> {
-    /// Pairs whose bound is above this cannot matter; [`FOUND`] ends the search.
-    fn limit(&self) -> f32;
-}
-
-impl Bounds for SignedGaps<'_> {
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.limit
-    }
-}
-
-impl Bounds for OrderedOverlap<'_> {
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.limit
-    }
-}
 
 /// Memory of a query, kept by the caller: after the first few nothing is allocated.
 #[derive(Clone, Debug, Default)]
@@ -41,20 +19,22 @@ pub struct SearchScratch {
 /// The limit that ends a search.
 pub(super) const FOUND: f32 = f32::NEG_INFINITY;
 
-/// Goes through all pairs of leaves that may matter. `leaves` may lower the limit.
-pub(super) fn seek<B: Bounds>(
+/// Goes through all pairs of leaves that may matter. The keys of `bounds` are lower bounds. Pairs with a bound above
+/// `limit` cannot matter, and [`FOUND`] ends the search. `leaves` may lower the limit.
+pub(super) fn seek<B: Compare<Key = f32>>(
     trees: (&Tree, &Tree),
     bounds: &mut B,
+    limit: impl Fn(&B) -> f32,
     scratch: &mut SearchScratch,
     mut leaves: impl FnMut(&mut B, &LeafBatch, &LeafBatch),
 ) {
     let roots = (f32::NEG_INFINITY, (Slot::ROOT, Slot::ROOT));
     best_first(&mut scratch.stack, roots, |key, slots, stack| {
-        if bounds.limit() == FOUND {
+        if limit(bounds) == FOUND {
             return ControlFlow::Break(());
         }
         // A bound that is NaN prunes nothing.
-        if key > bounds.limit() {
+        if key > limit(bounds) {
             return ControlFlow::Continue(());
         }
         if let Some((leaf1, leaf2)) = leaves_at(trees, slots) {
