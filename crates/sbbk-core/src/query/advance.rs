@@ -13,7 +13,7 @@ use crate::traverse::Placement;
 use crate::tree::Tree;
 
 use super::contacts::contacts;
-use super::nearest::{Goal, nearest, search_except};
+use super::nearest::{Goal, search};
 use super::seek::SearchScratch;
 use super::triangles::FoundPair;
 
@@ -79,10 +79,7 @@ impl Bodies for MeshBodies<'_> {
         excluded: &[[u32; 2]],
     ) -> Option<FoundPair> {
         let Self { trees, scratch } = self;
-        if excluded.is_empty() {
-            return nearest(*trees, *placement, reach, scratch);
-        }
-        search_except(*trees, *placement, reach, Goal::Nearest, excluded, scratch).0
+        search(*trees, *placement, reach, Goal::Nearest, excluded, scratch).0
     }
 
     fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(FoundPair)) {

@@ -38,7 +38,7 @@ pub fn nearest(
     limit: f64,
     scratch: &mut SearchScratch,
 ) -> Option<FoundPair> {
-    search(trees, placement, limit, Goal::Nearest, scratch).0
+    search(trees, placement, limit, Goal::Nearest, &[], scratch).0
 }
 
 /// Like [`nearest`], but returns the deepest pair if several touch or cross.
@@ -48,33 +48,24 @@ pub fn deepest(
     limit: f64,
     scratch: &mut SearchScratch,
 ) -> Option<FoundPair> {
-    search(trees, placement, limit, Goal::Deepest, scratch).0
+    search(trees, placement, limit, Goal::Deepest, &[], scratch).0
 }
 
-/// Returns the pair, and how many pairs of nodes and of triangles were compared.
-fn search(
+/// Searches all pairs of triangles except those in `excluded`, which is sorted. Returns the pair, and how many pairs of
+/// nodes and of triangles were compared.
+pub(super) fn search(
     trees: (&Tree, &Tree),
     placement: Placement,
     limit: f64,
     goal: Goal,
-    scratch: &mut SearchScratch,
-) -> (Option<FoundPair>, [u32; 2]) {
-    // Unlike `min`, this keeps a limit that is NaN, which admits nothing.
-    let some = some_distance(trees, &placement);
-    let best = if some < limit { some } else { limit };
-    search_except(trees, placement, best, goal, &[], scratch)
-}
-
-/// Searches all pairs of triangles except those in `excluded`, which is sorted.
-pub(super) fn search_except(
-    trees: (&Tree, &Tree),
-    placement: Placement,
-    best: f64,
-    goal: Goal,
     excluded: &[[u32; 2]],
     scratch: &mut SearchScratch,
 ) -> (Option<FoundPair>, [u32; 2]) {
-    // Unlike `best < 0`, this rejects a limit that is NaN.
+    // The triangles of any two vertices may be excluded.
+    let some = if excluded.is_empty() { some_distance(trees, &placement) } else { f64::INFINITY };
+    // Unlike `min`, this keeps a limit that is NaN, which admits nothing.
+    let best = if some < limit { some } else { limit };
+    // Unlike `best < 0`, this rejects NaN.
     let admits = best >= 0.0;
     if !admits || !placement.is_finite() {
         return (None, [0; 2]);
@@ -235,7 +226,7 @@ mod tests {
                 let direction = random.vector(1.0).normalize();
                 let pose = Pose3::from_parts(distance * direction, random.rotation());
                 let placement = Placement::new(&pose);
-                let (_, counts) = search((&tree, &tree), placement, limit, goal, &mut scratch);
+                let (_, counts) = search((&tree, &tree), placement, limit, goal, &[], &mut scratch);
                 assert!(counts[0] < 8000 && counts[1] < 600, "{counts:?} at {distance}");
             }
         }
@@ -258,7 +249,7 @@ mod tests {
         let mut scratch = SearchScratch::default();
         for trees in [(&large, &small), (&small, &large)] {
             let (found, counts) =
-                search(trees, placement, f64::INFINITY, Goal::Nearest, &mut scratch);
+                search(trees, placement, f64::INFINITY, Goal::Nearest, &[], &mut scratch);
             let distance = found.unwrap().contact.distance;
             assert!((distance - 1.4).abs() < 1e-6 && counts[1] < 64, "{distance}, {counts:?}");
         }
