@@ -29,14 +29,15 @@ pub struct LeafTest {
 impl LeafTest {
     /// A test at the pose and margin of `frame`.
     pub fn new(frame: &PairFrame) -> Self {
-        Self { frame: LeafFrame::new(frame) }
+        let at = LeafFrame::at(&frame.placement);
+        Self { frame: at.with_margin(frame.margin, frame.rounding[0]) }
     }
 
     /// Replaces the margin.
     #[inline]
     #[must_use]
     pub fn within(&self, margin: f32) -> Self {
-        Self { frame: self.frame.within(margin) }
+        Self { frame: self.frame.with_margin(margin, self.frame.rounding) }
     }
 
     /// Calls `found(lane1, lane2)` for the pairs of triangles that no axis separates by more than

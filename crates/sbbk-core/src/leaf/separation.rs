@@ -50,7 +50,7 @@
 use wide::f32x4;
 
 use crate::simd::{V3, cross, dot, each, largest, smallest, sub};
-use crate::traverse::{PairFrame, Placement};
+use crate::traverse::Placement;
 use crate::volumes::rounding::gamma;
 
 /// Bound on the error of squared gaps that underflow: a few times 2⁻¹⁴⁹ a term.
@@ -71,10 +71,6 @@ pub(super) struct LeafFrame {
 }
 
 impl LeafFrame {
-    pub(super) fn new(frame: &PairFrame) -> Self {
-        Self::at(&frame.placement).with_margin(frame.margin, frame.rounding[0])
-    }
-
     /// Without a margin.
     pub(super) fn at(placement: &Placement) -> Self {
         Self {
@@ -84,12 +80,6 @@ impl LeafFrame {
             margin: 0.0,
             products: 0.0,
         }
-    }
-
-    /// Replaces the margin.
-    #[inline(always)]
-    pub(super) fn within(self, margin: f32) -> Self {
-        self.with_margin(margin, self.rounding)
     }
 
     /// Sets the margin, at least zero, and `r` of the module's documentation.
