@@ -75,27 +75,20 @@ impl Bounds {
     /// [`BroadPhase`] computes exactly this. It misses no pair by rounding, and takes spheres up to
     /// 2⁻²⁰ of the sum of radii and margin too far apart.
     pub fn is_pair_with(&self, other: &Self, margin: f32) -> bool {
-        Reach::new(self, margin).overlaps(&Reach::new(other, margin))
-    }
-}
-
-/// Bounds widened by the margin: a pair is an overlap, touching included.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Reach {
-    aabb: Aabb,
-    centre: Vec3,
-    radius: f32,
-}
-
-impl Reach {
-    fn new(&Bounds { centre, radius, min, max }: &Bounds, margin: f32) -> Self {
-        Self { aabb: Aabb { min, max: max + margin }, centre, radius: radius + 0.5 * margin }
-    }
-
-    fn overlaps(&self, other: &Self) -> bool {
+        let (one, two) = (self.widened(margin), other.widened(margin));
         // The test of the tree, for one pair.
-        let (one, two) = (self.aabb, other.aabb);
-        one.min.cmple(two.max).all() && two.min.cmple(one.max).all() && self.spheres_overlap(other)
+        one.min.cmple(two.max).all() && two.min.cmple(one.max).all() && one.spheres_overlap(&two)
+    }
+
+    /// Returns these bounds, widened by the margin. A pair is then an overlap, touching included.
+    fn widened(mut self, margin: f32) -> Self {
+        self.max += margin;
+        self.radius += 0.5 * margin;
+        self
+    }
+
+    fn aabb(&self) -> Aabb {
+        Aabb { min: self.min, max: self.max }
     }
 
     fn spheres_overlap(&self, other: &Self) -> bool {
@@ -109,7 +102,8 @@ impl Reach {
 #[derive(Clone, Debug)]
 pub struct BroadPhase {
     margin: f32,
-    reaches: Vec<Reach>,
+    /// Widened.
+    reaches: Vec<Bounds>,
     /// Objects whose bounds differ from those of the last step.
     changed: Vec<bool>,
     tree: BlockTree,
@@ -131,7 +125,7 @@ impl BroadPhase {
     /// allocate nothing.
     pub fn pairs(&mut self, bounds: &[Bounds]) -> &[[u32; 2]] {
         let is_new = bounds.len() != self.reaches.len();
-        let reaches = bounds.iter().map(|bounds| Reach::new(bounds, self.margin));
+        let reaches = bounds.iter().map(|bounds| bounds.widened(self.margin));
         if is_new {
             self.reaches.clear();
             self.reaches.extend(reaches);
@@ -143,7 +137,7 @@ impl BroadPhase {
                 self.changed[object] = reach != self.reaches[object];
                 if self.changed[object] {
                     self.reaches[object] = reach;
-                    self.tree.update(object, &reach.aabb);
+                    self.tree.update(object, &reach.aabb());
                 }
             }
             let changed = &self.changed;

@@ -11,7 +11,7 @@
 //! The order of objects decides only the speed. So objects move by refit, and are packed afresh
 //! when too many boxes have grown too much.
 
-use super::Reach;
+use super::Bounds;
 use super::lanes::{BoxLanes, LANE_COUNT, LaneMask, Lanes};
 use crate::simd::bits;
 use crate::volumes::Aabb;
@@ -60,7 +60,7 @@ pub(super) struct BlockTree {
 
 impl BlockTree {
     /// Orders all objects by place.
-    pub(super) fn pack(&mut self, reaches: &[Reach], has_changed: &[bool]) {
+    pub(super) fn pack(&mut self, reaches: &[Bounds], has_changed: &[bool]) {
         self.objects.clear();
         self.objects.extend(0..reaches.len() as u32);
         sort(&mut self.objects, reaches);
@@ -69,7 +69,7 @@ impl BlockTree {
         for rank in 0..self.objects.len() {
             let object = self.objects[rank] as usize;
             self.ranks[object] = rank as u32;
-            self.levels[0].set(rank, &reaches[object].aabb, has_changed[object]);
+            self.levels[0].set(rank, &reaches[object].aabb(), has_changed[object]);
         }
         self.refit_groups(|_| true);
         self.least_sides.clear();
@@ -182,7 +182,7 @@ impl BlockTree {
 ///
 /// Every cut falls between whole subtrees, so that all nodes except the last on each level are
 /// full.
-fn sort(objects: &mut [u32], reaches: &[Reach]) {
+fn sort(objects: &mut [u32], reaches: &[Bounds]) {
     let group_count = objects.len().div_ceil(LANE_COUNT);
     if group_count <= 1 {
         return;
@@ -214,9 +214,8 @@ mod tests {
 
     const OBJECT_COUNT: usize = 1000;
 
-    fn cube(centre: Vec3, half_extent: f32) -> Reach {
-        let aabb = Aabb { min: centre - half_extent, max: centre + half_extent };
-        Reach { aabb, centre, radius: half_extent }
+    fn cube(centre: Vec3, radius: f32) -> Bounds {
+        Bounds { centre, radius, min: centre - radius, max: centre + radius }
     }
 
     /// A place of a cubic lattice of ten by ten by ten.
@@ -231,7 +230,7 @@ mod tests {
         let mut tree = BlockTree::default();
         tree.pack(&reaches, &[true; OBJECT_COUNT]);
         moved.iter().fold(tree.refit(), |_, moved| {
-            (0..OBJECT_COUNT).for_each(|i| tree.update(i, &cube(moved(i), size(i)).aabb));
+            (0..OBJECT_COUNT).for_each(|i| tree.update(i, &cube(moved(i), size(i)).aabb()));
             tree.refit()
         })
     }
