@@ -15,7 +15,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// How the triangles meet, by name.
+    /// Names of the ways in which triangles meet.
     pub fn kind(&self) -> &'static str {
         use Feature::{Edge, Face, Vertex};
         let TriangleContact { features, distance, .. } = self.contact;

@@ -39,7 +39,7 @@ pub(super) const FILTERED: Real = 0.1;
 pub(super) const EQUAL_DEPTH: Real = 0.02;
 
 /// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a step, so
-/// [`PatchPlan::equal_depth`] grows with the square of their ratio. Higher: cones on uneven ground stay awake. Lower: coins stand on
+/// [`PatchPlan::equal_depth`] grows with the square of their ratio, up to the size of a patch. Higher: cones on uneven ground stay awake. Lower: coins stand on
 /// one arc of the rim, and turn through floors.
 const SMALL_RADIUS: Real = 20.0;
 
@@ -88,7 +88,7 @@ impl PatchPlan {
     pub(super) fn of_convex(prediction: Real, radius: Real) -> Self {
         let plan = Self::new(prediction, radius);
         let small = (SMALL_RADIUS * prediction / radius).max(1.0);
-        Self { equal_depth: small * small * plan.equal_depth, ..plan }
+        Self { equal_depth: (small * small * plan.equal_depth).min(plan.size), ..plan }
     }
 
     /// Plan for two shapes, from the radius of the smaller one.
@@ -225,8 +225,7 @@ impl Reduction {
 }
 
 /// Least distance of a chosen point from the hull, in distances between the first two points. Higher: narrow
-/// sides lose corners; lower: rounding adds points to a line. Also the share of [`PatchPlan::equal_depth`], or of [`PatchPlan::size`]
-/// if less, that counts as rounding.
+/// sides lose corners; lower: rounding adds points to a line. Also the share of [`PatchPlan::equal_depth`] that counts as rounding.
 const LINE: Real = 1.0e-3;
 
 /// Direction in which the first point is outermost. It is along no side of common meshes.
@@ -303,8 +302,7 @@ impl Outermost {
         self.squares.clear();
         self.squares.resize(points.len(), Real::INFINITY);
         self.hull.clear();
-        let rounding = LINE * plan.equal_depth.min(plan.size);
-        let limit = points[0].1 + if plan.far.is_finite() { rounding } else { 0.0 };
+        let limit = points[0].1 + if plan.far.is_finite() { LINE * plan.equal_depth } else { 0.0 };
         let is_as_deep =
             |i: &usize| points[*i].1 <= limit && normal(*i).dot(normal(0)) >= plan.one_normal;
         let along = |i: &usize| self.flat[*i].dot(ANY_WAY);

@@ -127,8 +127,7 @@ impl BlockTree {
         }
     }
 
-    /// Reports each pair of objects whose boxes overlap and of which at least one has changed, once. Then marks all
-    /// objects as unchanged.
+    /// Reports each pair of overlapping boxes once, if one of the two has changed. Then marks all objects as unchanged.
     pub(super) fn take_pairs(&mut self, mut on_pair: impl FnMut(u32, u32)) {
         if !self.objects.is_empty() {
             self.descend(self.levels.len() - 1, [0, 0], &mut on_pair);

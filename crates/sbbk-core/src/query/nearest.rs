@@ -1,6 +1,6 @@
 //! The nearest or the deepest pair of triangles.
 //!
-//! Where faces are parallel, many pairs are as near as the nearest one, and rounding in `f32` lowers their bounds. Leaves are
+//! Pairs of triangles of two parallel faces are equally near, and rounding in `f32` lowers their bounds. Leaves are
 //! therefore compared along the normal of the nearest pair in `f64` ([`Toward::are_beyond`]).
 
 use glamx::{DVec3, Vec3};

@@ -15,7 +15,7 @@ use crate::volumes::rounding::gamma;
 /// is not finite no test passes. Any finite margin is valid.
 #[derive(Clone, Debug)]
 pub struct PairFrame {
-    /// Where mesh 2 is in the frame of mesh 1.
+    /// Placement of mesh 2 in the frame of mesh 1.
     pub(crate) placement: Placement,
     /// The distance up to which pairs are found.
     pub(crate) margin: f32,

@@ -110,7 +110,8 @@ pub enum BuildError {
 }
 
 impl Tree {
-    /// Builds the tree of a mesh. Degenerate triangles are kept. Without `layers`, the model of [`LayerPlan`] chooses them.
+    /// Builds the tree of a mesh. Degenerate triangles are kept. The model of [`LayerPlan`] chooses the layers unless they are
+    /// given.
     ///
     /// # Errors
     /// The first fault of the input, in the order counts, indices, coordinates.

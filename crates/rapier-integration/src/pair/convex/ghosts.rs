@@ -40,7 +40,7 @@ use super::contact::{Hit, PartContact};
 /// features replace exact points. Lower: rounding picks one of two equal contacts at a common edge as the ghost.
 pub(super) const ROUNDED: f64 = 1.0e-12;
 
-/// Number of contacts at a corner up to which all are looked at for each other. Beyond it an edge has a [`Place`]. Higher: slow
+/// Number of contacts at a corner up to which all are looked at for each other. Edges with more at both ends have a [`Place`]. Higher: slow
 /// at the hub of a fan. Lower: walls are ghosts where many triangles meet.
 const MANY: usize = 64;
 
@@ -89,7 +89,7 @@ struct Corner {
     place: Place,
 }
 
-/// What is known of the contacts at a vertex, or at an edge of many triangles.
+/// Knowledge about the contacts at a vertex, or at an edge of many triangles.
 struct Place {
     /// The contact with the least distance.
     nearest: u32,

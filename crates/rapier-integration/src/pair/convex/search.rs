@@ -241,7 +241,7 @@ impl<'a> ConvexSearch<'a> {
         gamma(32) * self.mesh.magnitude().max(size)
     }
 
-    /// Returns a lower bound of the time until a box of the mesh is within `target` of the moving shape;
+    /// Returns a lower bound of the time until a box of the mesh is within `target` of the moving shape. The bound is
     /// `Real::MAX` if the two pass each other. `velocity` and `around`, the box around the shape, are in the
     /// frame of the mesh.
     pub(super) fn time(

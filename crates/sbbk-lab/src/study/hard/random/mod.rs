@@ -65,7 +65,7 @@ impl Family {
     }
 }
 
-/// What all scenes of a study have. Chains keep their own iterations.
+/// Settings of all scenes of a study. Chains keep their own iterations.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Options {
     /// Seed of the random scenes
