@@ -12,20 +12,20 @@ use wide::f32x4;
 
 use super::frame::PairFrame;
 use super::side::{NodeLanes, Side};
-use crate::simd::{Spread, V3, dot, each, largest, smallest};
+use crate::simd::{Spread, V3, dot, each, smallest};
 use crate::tree::LeafBatch;
 use crate::volumes::directions;
 
-/// A direction from mesh 1 to mesh 2, in the slabs of both trees.
+/// A direction from mesh 1 to mesh 2. Mesh 1 is bounded against it, so both meshes have least heights.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Toward {
     /// Offset of frame 2 along the direction, less the rounding.
     nodes_offset: f32,
     /// The offset for triangles.
     leaves_offset: f32,
-    /// The direction in each frame.
+    /// Against the direction in frame 1, and along it in frame 2.
     directions: [Direction; 2],
-    /// The direction in each frame, without rounding to `f32`.
+    /// The same without rounding to `f32`.
     exact: [DVec3; 2],
     /// Offset of frame 2 along the direction, more by the rounding in `f64`.
     exact_offset: f64,
@@ -58,7 +58,7 @@ impl Toward {
         if !is_safe {
             return None;
         }
-        let directions = [normal, frame.placement.rotation.transpose() * normal];
+        let directions = [-normal, frame.placement.rotation.transpose() * normal];
         let along = normal.dot(frame.placement.translation);
         let rounding = f64::from(frame.rounding[0]);
         Some(Self {
@@ -73,29 +73,19 @@ impl Toward {
     /// Lower bounds of the signed distances of the volumes in four lanes: k-DOPs, or boxes where a tree has none.
     #[inline(always)]
     pub(crate) fn gaps(&self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
-        let [direction1, direction2] = &self.directions;
-        let offset = f32x4::splat(self.nodes_offset);
-        match &nodes.kdops {
-            Some(kdops) => {
-                let [terms1, terms2] = [direction1.terms, direction2.terms];
-                offset + kdops.two.lowest(terms2) + kdops.one.lowest(terms1.map(Term::reversed))
-            }
-            None => {
-                let [terms1, terms2] = [direction1.axes(), direction2.axes()];
-                let boxes = &nodes.boxes;
-                offset + boxes.two.lowest(terms2) + boxes.one.lowest(terms1.map(Term::reversed))
-            }
-        }
+        let [of1, of2] = &self.directions;
+        let heights = match (&nodes.kdops, &nodes.boxes) {
+            (Some(kdops), _) => kdops.one.lowest(of1.terms) + kdops.two.lowest(of2.terms),
+            (None, boxes) => boxes.one.lowest(of1.axes()) + boxes.two.lowest(of2.axes()),
+        };
+        f32x4::splat(self.nodes_offset) + heights
     }
 
     /// A lower bound of the distance of any triangle of leaf 1 from any of leaf 2.
     #[inline(always)]
     pub(crate) fn gap_of_leaves(&self, batch1: &LeafBatch, batch2: &LeafBatch) -> f32 {
-        let [direction1, direction2] = &self.directions;
-        let ends1 = largest(direction1.project(batch1)).to_array();
-        let starts2 = smallest(direction2.project(batch2)).to_array();
-        let end1 = ends1.into_iter().fold(f32::NEG_INFINITY, f32::max);
-        starts2.into_iter().fold(f32::INFINITY, f32::min) + self.leaves_offset - end1
+        let [of1, of2] = &self.directions;
+        self.leaves_offset + of1.lowest(batch1) + of2.lowest(batch2)
     }
 
     /// Returns true if the triangles of two leaves are no nearer than a distance, up to rounding in `f64`. `limit` is not
@@ -113,19 +103,11 @@ impl Toward {
     }
 
     fn exact_gap_of_leaves(&self, batch1: &LeafBatch, batch2: &LeafBatch) -> f64 {
-        let [ends1, starts2] =
-            [(batch1, self.exact[0]), (batch2, -self.exact[1])].map(|(of, along)| {
-                let corners = (0..of.count()).flat_map(|lane| of.corners(lane));
-                corners.map(|corner| along.dot(corner.as_dvec3())).fold(f64::NEG_INFINITY, f64::max)
-            });
-        self.exact_offset - starts2 - ends1
-    }
-}
-
-impl Term {
-    #[inline(always)]
-    fn reversed(self) -> Self {
-        Self { coefficient: -self.coefficient, ..self }
+        let lowest = |along: DVec3, batch: &LeafBatch| {
+            let corners = (0..batch.count()).flat_map(|lane| batch.corners(lane));
+            corners.map(|corner| along.dot(corner.as_dvec3())).fold(f64::INFINITY, f64::min)
+        };
+        self.exact_offset + lowest(self.exact[0], batch1) + lowest(self.exact[1], batch2)
     }
 }
 
@@ -156,11 +138,12 @@ impl Direction {
         }
     }
 
-    /// Projects the corners of all triangles of a leaf on the direction.
+    /// The least height of the corners of a leaf.
     #[inline(always)]
-    fn project(&self, batch: &LeafBatch) -> V3<f32x4> {
+    fn lowest(&self, batch: &LeafBatch) -> f32 {
         let direction = each(|axis| f32x4::splat(self.components[axis]));
         let corners = batch.lanes();
-        each(|corner| dot(direction, corners[corner]))
+        let heights = smallest(each(|corner| dot(direction, corners[corner])));
+        heights.to_array().into_iter().fold(f32::INFINITY, f32::min)
     }
 }
