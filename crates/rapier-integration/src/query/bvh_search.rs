@@ -35,6 +35,21 @@ struct Node {
     triangle: Option<u32>,
 }
 
+/// The normal of the first impact so far, in both frames. Bodies meet no sooner than along the normal.
+#[derive(Copy, Clone)]
+struct FirstNormal {
+    normals: [DVec3; 2],
+    /// Speed against the normal.
+    approach: f64,
+}
+
+impl FirstNormal {
+    /// Returns the time that a way along the normal takes.
+    fn time(&self, way: f64) -> f64 {
+        way / self.approach
+    }
+}
+
 /// Difference of distances that counts as none, in [roundings](BvhSearch::rounding). Higher: less exact distances. Lower: searches
 /// visit all pairs of parallel faces.
 const TIES: f64 = 4.0;
@@ -93,23 +108,18 @@ impl BvhSearch<'_> {
             return Some(found);
         }
         let target = f64::from(options.target_distance) + self.rounding();
-        // The normal of the first impact so far, in both frames, and the speed against it.
-        let normals = Cell::new(None::<([DVec3; 2], f64)>);
+        let normal = Cell::new(None::<FirstNormal>);
         let mut first = None::<Cast>;
-        let latest = f64::from(options.max_time);
         self.search(
-            latest,
+            f64::from(options.max_time),
             |one, two| {
-                let along = normals.get().map_or(0.0, |(normals, approach)| {
-                    (one.gap_along(two, normals) - target) / approach
-                });
-                one.time(two, velocity, target).max(along)
+                let along = |of: FirstNormal| of.time(one.gap_along(two, of.normals) - target);
+                one.time(two, velocity, target).max(normal.get().map_or(0.0, along))
             },
             |triangles, latest| {
-                let is_late = |(normals, approach): ([DVec3; 2], f64)| {
-                    self.gap_along(normals, triangles) - target > latest * approach
-                };
-                if normals.get().is_some_and(is_late) {
+                let along =
+                    |of: FirstNormal| of.time(self.gap_along(of.normals, triangles) - target);
+                if normal.get().is_some_and(|of| along(of) > latest) {
                     return None;
                 }
                 let found = cast(triangles, latest)?;
@@ -117,16 +127,20 @@ impl BvhSearch<'_> {
                     return None;
                 }
                 first = Some(found);
-                let approach = -found.pair.contact.normal.dot(velocity);
-                // A grazing impact has no approach.
-                let tie = TIES * self.rounding() / approach;
-                let is_bound = approach > 0.0 && tie.is_finite();
-                normals.set(is_bound.then(|| (self.normals(&found.pair), approach)));
-                let sooner = found.time - if is_bound { tie } else { 0.0 };
-                Some(if found.time > 0.0 { sooner } else { f64::NEG_INFINITY })
+                normal.set(self.first_normal(&found.pair, velocity));
+                // Parallel faces have many impacts at the same time.
+                let tie = normal.get().map_or(0.0, |of| of.time(TIES * self.rounding()));
+                Some(if found.time > 0.0 { found.time - tie } else { f64::NEG_INFINITY })
             },
         );
         first
+    }
+
+    /// Returns the normal of an impact as a bound of other times; `None` for a grazing impact.
+    fn first_normal(&self, pair: &FoundPair, velocity: DVec3) -> Option<FirstNormal> {
+        let approach = -pair.contact.normal.dot(velocity);
+        let is_bound = approach > 0.0 && approach.recip().is_finite();
+        is_bound.then(|| FirstNormal { normals: self.normals(pair), approach })
     }
 
     /// Visits pairs of triangles, the least bound first, while bounds are at most the limit. `visit`
