@@ -39,8 +39,8 @@ pub(super) const FILTERED: Real = 0.1;
 pub(super) const EQUAL_DEPTH: Real = 0.02;
 
 /// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a step, so
-/// [`PatchPlan::equal_depth`] grows with the square of their ratio, up to the size of a patch. Higher: cones on uneven ground stay awake. Lower: coins stand on
-/// one arc of the rim, and turn through floors.
+/// [`PatchPlan::equal_depth`] grows with the square of their ratio, up to the size of a patch. Higher: cones on uneven ground
+/// stay awake. Lower: coins stand on one arc of the rim, and turn through floors.
 const SMALL_RADIUS: Real = 20.0;
 
 /// Share of the depth of the deepest point that counts like [`PatchPlan::equal_depth`] where points are chosen. Higher: points

@@ -40,8 +40,8 @@ use super::contact::{Hit, PartContact};
 /// features replace exact points. Lower: rounding picks one of two equal contacts at a common edge as the ghost.
 pub(super) const ROUNDED: f64 = 1.0e-12;
 
-/// Number of contacts at a corner up to which all are looked at for each other. Edges with more at both ends have a [`Place`]. Higher: slow
-/// at the hub of a fan. Lower: walls are ghosts where many triangles meet.
+/// Number of contacts at a corner up to which all are looked at for each other. Edges with more at both ends have a
+/// [`Place`]. Higher: slow at the hub of a fan. Lower: walls are ghosts where many triangles meet.
 const MANY: usize = 64;
 
 /// Memory for the search: the contacts by the corners of their triangles.
@@ -90,6 +90,7 @@ struct Corner {
 }
 
 /// Knowledge about the contacts at a vertex, or at an edge of many triangles.
+#[derive(Default)]
 struct Place {
     /// The contact with the least distance.
     nearest: u32,
@@ -99,12 +100,6 @@ struct Place {
     strays: Option<Strays>,
     /// True if a triangle has an edge here that no other contact has.
     is_border: Option<bool>,
-}
-
-impl Place {
-    fn new(nearest: u32) -> Self {
-        Self { nearest, exceeded: None, strays: None, is_border: None }
-    }
 }
 
 /// Contacts of other triangles at the point of a contact.
@@ -264,7 +259,7 @@ impl GhostContacts {
         for (start, &entry) in (0..).zip(&*entries) {
             let nearest = contact_of(entry);
             if last_key.replace(entry >> 64) != Some(entry >> 64) {
-                corners.push(Corner { start, place: Place::new(nearest) });
+                corners.push(Corner { start, place: Place { nearest, ..Place::default() } });
             }
             let corner = corners.len() - 1;
             triangles[nearest as usize][usize::from(entry as u8)] = corner as u32;
@@ -289,19 +284,24 @@ impl GhostContacts {
         shorter.filter(has_other)
     }
 
+    /// Returns true if many contacts are at each end of an edge.
+    fn are_many(&self, ends: [u32; 2]) -> bool {
+        ends.iter().all(|&end| self.at_corner(end).len() > MANY)
+    }
+
     /// Returns the place of a contact, unless it is at an edge of few triangles.
     fn place(&mut self, contacts: &[Hit], contact: u32, feature: Feature) -> Option<&mut Place> {
         let ends = ends(feature).map(|end| self.triangles[contact as usize][end]);
         if let Feature::Vertex(_) = feature {
             return Some(&mut self.corners[ends[0] as usize].place);
         }
-        if ends.iter().any(|&end| self.at_corner(end).len() <= MANY) {
+        if !self.are_many(ends) {
             return None;
         }
         let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
         if !self.edges.contains_key(&key) {
             let nearest = nearest_of(contacts, contact, self.at_feature(contact, feature));
-            self.edges.insert(key, Place::new(nearest));
+            self.edges.insert(key, Place { nearest, ..Place::default() });
         }
         self.edges.get_mut(&key)
     }
@@ -403,9 +403,13 @@ impl GhostContacts {
     pub(super) fn list_nearby(&mut self, contact: u32) {
         let mut nearby = std::mem::take(&mut self.nearby);
         nearby.clear();
-        for (i, corner) in (0..).zip(self.triangles[contact as usize]) {
-            nearby.extend(self.at_corner(corner).take(MANY));
-            nearby.extend(self.at_feature(contact, Feature::Edge(i)).take(MANY));
+        let corners = self.triangles[contact as usize];
+        for i in 0..3 {
+            nearby.extend(self.at_corner(corners[i]).take(MANY));
+            // The list of an end without many contacts has all at the edge.
+            if self.are_many([corners[i], corners[(i + 1) % 3]]) {
+                nearby.extend(self.at_feature(contact, Feature::Edge(i as u8)).take(MANY));
+            }
         }
         nearby.sort_unstable_by_key(|&other| (other != contact, other));
         nearby.dedup();

@@ -252,7 +252,7 @@ pub(super) fn facing_feature(
         }
         ConvexShape::Features { core, map, .. } => {
             map.local_support_feature_toward(direction, point, &mut feature);
-            // Caps of these are discs.
+            // Cylinders and cones have discs as caps.
             let is_round = matches!(core, TypedShape::Cylinder(_) | TypedShape::Cone(_));
             let is_cap = feature.num_vertices == 4 && is_round;
             return (feature, is_cap);
