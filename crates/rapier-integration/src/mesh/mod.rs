@@ -16,4 +16,6 @@ pub(crate) use data::MeshData;
 pub(crate) use facets::{MeshFacets, box_between, is_minimum};
 pub(crate) use pair_mesh::{Change, LazySurface, PairMesh};
 pub(crate) use store::{MeshStore, Registered, use_trees};
-pub(crate) use view::{BEHIND, MeshView, TwoMeshes, box_of, exit, first_hit, is_covered, is_near};
+pub(crate) use view::{
+    BEHIND, MeshView, TwoMeshes, box_of, first_hit, is_covered, is_near, leaves,
+};

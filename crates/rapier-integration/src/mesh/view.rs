@@ -4,20 +4,23 @@
 //! needs nothing else.
 
 use std::cell::Cell;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
 use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::{PointQuery, Ray, RayCast, RayIntersection};
 use parry3d::shape::{CompositeShape, FeatureId, Shape, TriMesh};
-use sbbk_core::surface::{Place, place};
+use sbbk_core::surface::{Place, RayTriangles, place};
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
 use super::data::{MeshData, Tips};
+use super::rays::MeshRays;
 use super::store::MeshStore;
 
 /// Returns false if the BVH of a mesh has no triangle within `margin` of the box around a shape at
@@ -114,9 +117,6 @@ pub(super) fn nearest(
     Some((triangle, nearest, behind))
 }
 
-/// Greatest number of parts of a mesh that [`exit`] leaves one after another.
-const MOST_PARTS: usize = 8;
-
 /// Returns the first triangle that a ray meets within a length, and where. Faster than Parry's cast with a normal, which divides
 /// for each box.
 pub(crate) fn first_hit(mesh: &TriMesh, ray: &Ray, within: Real) -> Option<(u32, RayIntersection)> {
@@ -127,30 +127,16 @@ pub(crate) fn first_hit(mesh: &TriMesh, ray: &Ray, within: Real) -> Option<(u32,
     Some((triangle, hit(triangle)?))
 }
 
-/// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
-/// `first_hit` casts rays on the shape. `outward` is the sign with which normals lead out of a solid, whose parts may overlap;
-/// `None` for a sheet. Returns `None` if the ray meets nothing, or first meets the outer side of a solid's triangle.
-pub(crate) fn exit(
-    first_hit: impl Fn(&Ray) -> Option<RayIntersection>,
-    ray: &Ray,
-    outward: Option<f64>,
-) -> Option<(Real, Vec3)> {
-    let next = |from: Real| {
-        let rest = Ray::new(ray.origin + from * ray.dir, ray.dir);
-        let hit = first_hit(&rest)?;
-        // Parry calls the back face 1, and turns normals against the ray.
-        let is_back = hit.feature == FeatureId::Face(1);
-        let leaves = outward.is_none_or(|outward| is_back == (outward > 0.0));
-        leaves.then_some((from + hit.time_of_impact, -hit.normal))
-    };
-    let size = ray.origin.abs().max_element();
-    let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + size);
-    let first = next(0.0)?;
-    if outward.is_none() {
-        return Some(first);
-    }
-    let exits = std::iter::successors(Some(first), |(length, _)| next(beyond(*length)));
-    exits.take(MOST_PARTS).last()
+/// Places where a ray meets a mesh, at most. At least half as many nearest ones are found. Higher: more memory; lower: overlaps of
+/// many layers are less deep.
+const MOST_HITS: usize = 64;
+
+/// Returns true if a ray that starts in a shape leaves it where it meets a triangle. `outward` is the sign with which normals
+/// lead out of a solid; `None` for a sheet, which may be left on both sides.
+pub(crate) fn leaves(hit: &RayIntersection, outward: Option<f64>) -> bool {
+    // Parry calls the back face 1.
+    let is_back = hit.feature == FeatureId::Face(1);
+    outward.is_none_or(|outward| is_back == (outward > 0.0))
 }
 
 /// True if a box is finite and not empty.
@@ -309,9 +295,48 @@ impl<'a> MeshView<'a> {
         Some(nearest.distance(point))
     }
 
-    /// Returns where a ray from a point inside leaves the mesh, see [`exit`].
+    /// Returns the distance in which a ray from a point inside leaves the mesh, and the outward normal there. A solid goes on
+    /// while the ray is in one of its parts, which may overlap. `None` if the ray does not leave. See [`leaves`].
     pub(crate) fn exit(&self, ray: &Ray, outward: Option<f64>) -> Option<(Real, Vec3)> {
-        exit(|ray| Some(first_hit(self.mesh, ray, Real::MAX)?.1), ray, outward)
+        // Rounding parts the triangles at an edge.
+        let rounding = 64.0 * Real::EPSILON * self.magnitude();
+        let is_same = |a: &RayIntersection, b: &RayIntersection| {
+            b.time_of_impact - a.time_of_impact <= rounding
+        };
+        let sign = |hit| if leaves(hit, outward) { 1 } else { -1 };
+        let (mut parts, mut end) = (1, None);
+        for same in self.hits(ray).chunk_by(is_same) {
+            let left = same.iter().map(sign).sum::<i32>().signum();
+            let is_beyond = end.is_some() && (left < 0 || outward.is_none());
+            if is_beyond {
+                break;
+            }
+            parts -= left;
+            end = if left > 0 && parts <= 0 { same.first().copied() } else { end };
+        }
+        // Parry turns normals against the ray.
+        end.map(|hit| (hit.time_of_impact, -hit.normal))
+    }
+
+    /// Returns where a ray meets triangles, the nearest first.
+    fn hits(&self, ray: &Ray) -> ArrayVec<RayIntersection, MOST_HITS> {
+        let nearest_first = |a: &RayIntersection, b: &RayIntersection| {
+            a.time_of_impact.total_cmp(&b.time_of_impact)
+        };
+        let (mut hits, mut within) = (ArrayVec::<_, MOST_HITS>::new(), Real::MAX);
+        let mut meet = |triangle| {
+            if hits.is_full() {
+                hits.sort_unstable_by(nearest_first);
+                hits.truncate(MOST_HITS / 2);
+                within = hits[MOST_HITS / 2 - 1].time_of_impact;
+            }
+            let triangle = self.mesh.triangle(triangle);
+            hits.extend(triangle.cast_local_ray_and_get_normal(ray, within, false));
+            ControlFlow::Continue(())
+        };
+        MeshRays(self.mesh).along(ray.origin.as_dvec3(), ray.dir.as_dvec3(), &mut meet);
+        hits.sort_unstable_by(nearest_first);
+        hits
     }
 
     /// Returns the triangles for whose boxes, and the boxes above them, `overlaps` returns true.
@@ -354,4 +379,64 @@ fn tip_directions() -> impl Iterator<Item = Vec3> {
 #[inline(always)]
 pub(crate) fn box_of(node: &BvhNode) -> TestedBox {
     TestedBox::new(node.mins(), node.maxs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parry3d::shape::Cuboid;
+
+    /// A mesh of boxes along x, of two units of height and depth.
+    fn row(boxes: &[[Real; 2]]) -> TriMesh {
+        let parts = boxes.iter().map(|&[from, to]| {
+            let middle = Pose::translation(0.5 * (from + to), 0.0, 0.0);
+            let (mut vertices, indices) =
+                Cuboid::new(Vec3::new(0.5 * (to - from), 1.0, 1.0)).to_trimesh();
+            vertices.iter_mut().for_each(|vertex| *vertex = middle * *vertex);
+            TriMesh::new(vertices, indices).unwrap()
+        });
+        parts
+            .reduce(|mut row, part| {
+                row.append(&part);
+                row
+            })
+            .unwrap()
+    }
+
+    /// Closed forms. Would catch solids that end where one part begins in another, or at an edge of two triangles.
+    #[test]
+    fn a_ray_leaves_a_solid_after_its_last_part() {
+        let cases: [(&[[Real; 2]], Option<Real>); 7] = [
+            (&[[0.0, 2.0]], Some(1.5)),
+            (&[[0.0, 2.0], [3.0, 4.0]], Some(1.5)),
+            (&[[0.0, 2.0], [2.0, 4.0]], Some(3.5)),
+            (&[[0.0, 2.0], [1.0, 4.0]], Some(3.5)),
+            (&[[0.0, 2.0], [0.0, 4.0]], Some(3.5)),
+            (&[[0.0, 4.0], [1.0, 2.0]], Some(3.5)),
+            (&[[1.0, 2.0]], None),
+        ];
+        // The first ray meets the diagonals of all faces.
+        for beside in [Vec3::ZERO, Vec3::new(0.0, 0.3, -0.4)] {
+            let ray = Ray::new(0.5 * Vec3::X + beside, Vec3::X);
+            for (boxes, expected) in cases {
+                let (mut mesh, store) = (row(boxes), MeshStore::default());
+                for outward in [1.0, -1.0] {
+                    let exit = store.view(&mesh).unwrap().exit(&ray, Some(outward));
+                    assert_eq!(exit, expected.map(|length| (length, Vec3::X)), "{boxes:?}");
+                    mesh.reverse();
+                }
+            }
+        }
+    }
+
+    /// Would catch a list that loses the nearest hits when it is full.
+    #[test]
+    fn the_nearest_hits_of_many_are_kept() {
+        let ends = (0..300).map(|i| f64::from(i * 7919 % 300 + 1) as Real);
+        let boxes: Vec<[Real; 2]> = ends.map(|end| [-end, end]).collect();
+        let (mesh, store) = (row(&boxes), MeshStore::default());
+        let hits = store.view(&mesh).unwrap().hits(&Ray::new(Vec3::new(0.0, 0.3, -0.4), Vec3::X));
+        assert!(hits.len() >= MOST_HITS / 2);
+        assert!(hits.iter().zip(1..).all(|(hit, i)| hit.time_of_impact == i as Real));
+    }
 }

@@ -189,9 +189,7 @@ pub(super) fn find_ways(
         let Some(contour) = Contour::of(segments) else { continue };
         let points = contour.points();
         let overlap = Overlap::of(shapes, island);
-        let found = overlap.way_across(&contour, &points);
-        let most = DEPTH_PER_LENGTH * contour.length;
-        let Some((way, is_exact)) = found.filter(|(way, _)| way.length < most) else { continue };
+        let Some((way, is_exact)) = overlap.way_across(&contour, &points) else { continue };
         let Way { normal, length, exits } = way;
         let way = IslandWay { normal, length, is_exact, has_middle: exits[0].is_some() };
         let contacts = points.iter().zip(exits).filter_map(|((segment, point), exits)| {
@@ -214,16 +212,17 @@ impl<'a> Overlap<'a> {
     /// faces across from each other, and the area vector of a flat contour. Other ways are the area vector, and the normals
     /// where it leads out from the middle. Directions from the middle to the nearest points of both surfaces are tried as well.
     fn way_across(&self, contour: &Contour, points: &Points) -> Option<(Way, bool)> {
-        let Contour { middle, normal, is_flat, .. } = *contour;
+        let Contour { length, middle, normal, is_flat, .. } = *contour;
+        let most = DEPTH_PER_LENGTH * length;
         let is_near = |way: &DVec3| way.dot(normal) > SAME_SIDE;
         let normals = self.exits(middle, normal).map(|[(_, one), (_, two)]| [one, -two]);
         let face = normals.filter(|[one, two]| one.dot(*two) > ALONG_NORMAL).map(|[one, _]| one);
         if let Some(way) = face.filter(is_near).or(is_flat.then_some(normal)) {
-            return Some((self.way_along(way, points, f64::INFINITY)?, true));
+            return Some((self.way_along(way, points, most)?, true));
         }
         let ways = normals.into_iter().flatten().chain(self.nearest_ways(middle)).filter(is_near);
         let shortest = ways.chain([normal]).fold(None, |shortest: Option<Way>, way| {
-            let limit = shortest.as_ref().map_or(f64::INFINITY, |known| known.length);
+            let limit = shortest.as_ref().map_or(most, |known| known.length);
             self.way_along(way, points, limit).or(shortest)
         });
         Some((shortest?, false))

@@ -20,7 +20,7 @@ use sbbk_core::volumes::rounding::gamma;
 use super::field::Field;
 use super::pose::{Moving, PairPose};
 use super::reduce::FILTERED;
-use crate::mesh::{LazySurface, MeshFacets, MeshView, exit, first_hit};
+use crate::mesh::{LazySurface, MeshFacets, MeshView, first_hit, leaves};
 
 /// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
 /// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
@@ -366,8 +366,10 @@ impl<'q> TriangleShape<'q> {
         match self {
             Self::Mesh(mesh) => mesh.view.exit(ray, outward),
             Self::Field(FieldShape { field, .. }) => {
-                let cast = |ray: &Ray| field.0.cast_local_ray_and_get_normal(ray, Real::MAX, false);
-                exit(cast, ray, outward)
+                // A ray leaves a field once at most.
+                let hit = field.0.cast_local_ray_and_get_normal(ray, Real::MAX, false);
+                let exit = hit.filter(|hit| leaves(hit, outward))?;
+                Some((exit.time_of_impact, -exit.normal))
             }
         }
     }
