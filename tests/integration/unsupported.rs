@@ -34,6 +34,13 @@ fn a_nan_vertex_is_an_error_of_prepare_and_leaves_the_other_triangles() {
     assert_eq!(dispatcher.stats().unsupported_queries, 0);
 }
 
+#[test]
+fn a_deformable_mesh_is_an_error_of_prepare() {
+    let soft = mesh::ball(1.0, 4).trimesh(TriMeshFlags::DEFORMABLE);
+    let reason = SbbkDispatcher::default().prepare(&soft).unwrap_err().to_string();
+    assert!(reason.contains("`DEFORMABLE`"), "{reason}");
+}
+
 /// Meshes without a finite coordinate along some axes.
 fn endless_meshes() -> Vec<TriMesh> {
     let ball = shape(&mesh::ball(1.0, 4));

@@ -90,9 +90,12 @@ impl SbbkDispatcher {
     /// ```
     ///
     /// # Errors
-    /// Names the defect of the mesh, for example a vertex that is NaN.
+    /// Names the defect of the mesh, for example a vertex that is NaN, or the flag `DEFORMABLE`.
     #[must_use = "the registration ends when the result is dropped"]
     pub fn prepare(&self, mesh: &TriMesh) -> Result<PreparedTree, PrepareError> {
+        if mesh.is_deformable() {
+            return Err(PrepareError(Defect::Deformable));
+        }
         Ok(PreparedTree(self.store.register(mesh, None)?))
     }
 
@@ -197,18 +200,33 @@ impl fmt::Debug for PreparedTree {
 
 /// Says why a mesh cannot be prepared.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PrepareError(BuildError);
+pub struct PrepareError(Defect);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Defect {
+    NoTree(BuildError),
+    Deformable,
+}
 
 impl From<BuildError> for PrepareError {
     fn from(cause: BuildError) -> Self {
-        Self(cause)
+        Self(Defect::NoTree(cause))
     }
 }
 
 impl fmt::Display for PrepareError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "cannot prepare this mesh: {}. ", self.0)?;
-        f.write_str(match self.0 {
+        let cause = match &self.0 {
+            Defect::NoTree(cause) => cause,
+            Defect::Deformable => {
+                return f.write_str(
+                    "cannot prepare this mesh: it has the flag `DEFORMABLE`. \
+                     Use it unprepared, or remove the flag if it does not change",
+                );
+            }
+        };
+        write!(f, "cannot prepare this mesh: {cause}. ")?;
+        f.write_str(match cause {
             BuildError::NotFinite { .. } => {
                 "Remove or repair the triangles of that vertex. Until then their contacts are lost"
             }
@@ -222,7 +240,10 @@ impl fmt::Display for PrepareError {
 
 impl Error for PrepareError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
-        Some(&self.0)
+        match &self.0 {
+            Defect::NoTree(cause) => Some(cause),
+            Defect::Deformable => None,
+        }
     }
 }
 

@@ -124,18 +124,18 @@ impl MeshStore {
         Ok(registered)
     }
 
-    /// Returns the data of a mesh, if the mesh is registered.
-    pub(crate) fn registered(&self, mesh: &TriMesh) -> Option<Arc<MeshData>> {
+    /// Returns the registration of a mesh. Hashes the content of a large mesh if one of as many triangles is registered
+    /// without a shape.
+    pub(crate) fn registered(&self, mesh: &TriMesh) -> Option<Arc<Registered>> {
         let meshes = self.registered.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = meshes.shapes.get(&address(mesh)).and_then(Weak::upgrade) {
-            return Some(Arc::clone(&known.data));
+            return Some(known);
         }
         let of_count = meshes.contents.get(&mesh.indices().len())?;
         let known: Vec<_> = of_count.iter().filter_map(Weak::upgrade).collect();
         drop(meshes);
         let content = (!known.is_empty()).then(|| ContentHash::of(mesh))?;
-        let known = known.into_iter().find(|known| known.content == content)?;
-        Some(Arc::clone(&known.data))
+        known.into_iter().find(|known| known.content == content)
     }
 
     /// Rises when a registration begins or ends.

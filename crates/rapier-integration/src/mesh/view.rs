@@ -180,7 +180,12 @@ impl<'a> MeshView<'a> {
     /// Returns the shared data of the mesh with its tree, if the mesh is registered or small. Finds
     /// small ones by a hash of their content, and builds their trees within the budget.
     pub(crate) fn with_tree(&self) -> Option<Arc<MeshData>> {
-        self.store.registered(self.mesh).or_else(|| self.store.small_with_tree(self.mesh))
+        self.registered().or_else(|| self.store.small_with_tree(self.mesh))
+    }
+
+    /// Returns the shared data of the mesh, if it is registered.
+    pub(crate) fn registered(&self) -> Option<Arc<MeshData>> {
+        Some(Arc::clone(&self.store.registered(self.mesh)?.data))
     }
 
     /// True if the mesh cannot change while its token stays.

@@ -87,8 +87,7 @@ impl<'a> MeshQuery<'a> {
     /// Returns triangles that touch, if any do.
     pub(super) fn touching(&self) -> Option<[u32; 2]> {
         // The hash of a small mesh would cost more than the query.
-        let registered =
-            |view: &MeshView<'_>| view.store.registered(view.mesh).filter(|_| self.use_trees());
+        let registered = |view: &MeshView<'_>| view.registered().filter(|_| self.use_trees());
         let [mesh1, mesh2] = self.meshes.each_ref().map(registered);
         let pair = if let (Some(tree1), Some(tree2)) = (mesh1, mesh2) {
             search_trees(&[tree1, tree2], |trees, scratch| meeting(trees, self.placement, scratch))

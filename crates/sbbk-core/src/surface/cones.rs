@@ -19,10 +19,11 @@ impl MinimumCones {
         u16::from_le_bytes(self.0)
     }
 
-    /// Returns the cones of a number; `None` for 0.
+    /// Returns the cones of a number. `None` for other numbers, for example 0.
     #[inline]
     pub fn of_bits(bits: u16) -> Option<Self> {
-        (bits != 0).then(|| Self(bits.to_le_bytes()))
+        let bytes = bits.to_le_bytes();
+        (!bytes.contains(&0)).then_some(Self(bytes))
     }
 
     /// Returns the square of the least cosine between the normal's line and a direction of a cone.

@@ -43,7 +43,7 @@ pub trait Facets {
 }
 
 /// Visits the one-ring of an edge or a vertex, starting with `triangle`, until `visit` breaks.
-/// Returns true if the ring closes.
+/// Returns true if the ring closes. Ends for any twins, also for those that a mesh had before an edit.
 #[inline(always)]
 pub(super) fn visit_ring(
     facets: &impl Facets,
@@ -66,10 +66,13 @@ pub(super) fn visit_ring(
         let [u, v] = [edge(1), edge(2)];
         return visit(Wedge { half_edge, edges: [u, v], are_new: [true; 2] }).is_continue();
     }
-    let (mut at, mut u) = (first, first_v);
+    let (mut at, mut u, mut walk) = (first, first_v, Walk::new(first));
     while let Some(twin) = facets.twin(previous(at)) {
         if twin == first {
             return true;
+        }
+        if walk.returns_at(twin) {
+            return false;
         }
         at = twin;
         let v = edge(at, 2);
@@ -79,9 +82,12 @@ pub(super) fn visit_ring(
         u = v;
     }
     // At a border: the other direction.
-    let (mut at, mut v) = (first, first_u);
+    let (mut at, mut v, mut walk) = (first, first_u, Walk::new(first));
     while let Some(twin) = facets.twin(at) {
         at = next(twin);
+        if walk.returns_at(at) {
+            break;
+        }
         let u = edge(at, 1);
         if visit(Wedge { half_edge: at, edges: [u, v], are_new: [true, false] }).is_break() {
             break;
@@ -89,6 +95,34 @@ pub(super) fn visit_ring(
         v = u;
     }
     false
+}
+
+/// Notices that a walk goes in circles, in constant memory (Brent 1980, "An improved Monte Carlo factorization algorithm").
+struct Walk {
+    /// Half-edge of an earlier step.
+    mark: u32,
+    /// Steps to the next mark.
+    left: u32,
+    /// Steps between the last two marks.
+    between: u32,
+}
+
+impl Walk {
+    fn new(first: u32) -> Self {
+        Self { mark: first, left: 1, between: 1 }
+    }
+
+    /// Makes a step. Returns true if the walk is where it was before.
+    #[inline(always)]
+    fn returns_at(&mut self, half_edge: u32) -> bool {
+        let returns = half_edge == self.mark;
+        self.left -= 1;
+        if self.left == 0 {
+            self.between *= 2;
+            (self.mark, self.left) = (half_edge, self.between);
+        }
+        returns
+    }
 }
 
 /// A triangle of a one-ring.
@@ -130,4 +164,42 @@ pub(super) fn next(half_edge: u32) -> u32 {
 
 pub(super) fn previous(half_edge: u32) -> u32 {
     if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    struct AnyTwins(Vec<Option<u32>>);
+
+    impl Facets for AnyTwins {
+        fn twin(&self, half_edge: u32) -> Option<u32> {
+            self.0[half_edge as usize]
+        }
+
+        fn corner(&self, _: u32, _: usize) -> DVec3 {
+            DVec3::ZERO
+        }
+    }
+
+    proptest! {
+        /// Would catch a walk that enters a circle without its start, as after an edit that a host did not tell.
+        #[test]
+        fn walks_end_for_any_twins(numbers in vec(any::<u32>(), 3..300)) {
+            let count = numbers.len() as u32 / 3 * 3;
+            let twin = |number: &u32| (number % 16 > 0).then_some(number / 16 % count);
+            let facets = AnyTwins(numbers.iter().map(twin).collect());
+            for half_edge in 0..count {
+                let (feature, mut steps) = (Feature::Vertex((half_edge % 3) as u8), 0);
+                visit_ring(&facets, half_edge / 3, feature, |_| {
+                    steps += 1;
+                    assert!(steps <= 8 * count, "{half_edge} of {count}");
+                    ControlFlow::Continue(())
+                });
+            }
+        }
+    }
 }
