@@ -74,7 +74,7 @@ pub fn candidates(
     let mut frame = PairFrame::new(trees, placement, margin);
     let test = LeafTest::new(&frame);
     let (mut one, mut two) = (BTreeMap::new(), BTreeMap::new());
-    descend(trees, &mut frame, &mut DescentScratch::default(), (), |batch1, batch2| {
+    descend(trees, &mut frame, &mut DescentScratch::default(), |batch1, batch2| {
         test.survivors(batch1, batch2, |lane1, lane2| {
             one.insert(batch1.triangles()[lane1], batch1.corners(lane1));
             two.insert(batch2.triangles()[lane2], batch2.corners(lane2));

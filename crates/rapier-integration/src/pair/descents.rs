@@ -20,8 +20,8 @@ use sbbk_core::field::{FieldFrame, FieldLeaves};
 use sbbk_core::leaf::{LateralCulling, LeafTest};
 use sbbk_core::surface::{Facets, Surface};
 use sbbk_core::traverse::{
-    BoxTest, Counters, DescentCounts, DescentScratch, NearBox, NodePair, PairFrame, Placement,
-    TestedBox, begin_descent, descend_from,
+    BoxTest, DescentCounts, DescentScratch, NearBox, NodePair, PairFrame, Placement, TestedBox,
+    begin_descent, descend_from,
 };
 use sbbk_core::tree::{BATCH, LeafBatch, Tree};
 
@@ -176,12 +176,13 @@ impl TriangleShapes<'_> {
         let test = LeafTest::new(&frame);
         let doubles = self.doubles();
         let count = if has_threads() { STARTS } else { 1 };
-        begin_descent(trees, &mut frame, count, start, &mut descent.counts);
+        begin_descent(trees, &mut frame, count, start);
+        descent.counts += std::mem::take(&mut frame.counts);
         let least = if start.len() < STARTS { STARTS } else { LEAST_STARTS };
         in_chunks(start, least, descent, &|start: &mut [_], chunk: &mut DescentChunk| {
             let DescentChunk { found, counts, stack } = chunk;
             let frame = &mut frame.clone();
-            descend_from(start, trees, frame, stack, counts, |batch1, batch2| {
+            descend_from(start, trees, frame, stack, |batch1, batch2| {
                 let triangles = [batch1.triangles(), batch2.triangles()];
                 let bends_little = |i: usize, lane: usize| self.bends_little(i, triangles[i][lane]);
                 let found = |lane1: usize, lane2: usize| {
@@ -193,6 +194,7 @@ impl TriangleShapes<'_> {
                 let lateral = culling.as_ref();
                 test.survivors_in_front(lateral, batch1, batch2, bends_little, found);
             });
+            *counts += frame.counts;
         });
     }
 
@@ -235,15 +237,16 @@ impl TriangleShapes<'_> {
         let frame = FieldFrame::new(&field, moving.placement(self.pose), margin);
         let leaves = FieldLeaves::new(&frame, moving.body.ball.centre, mesh.magnitude());
         near.clear();
-        near.extend(mesh.near(|node| frame.meets(node, ())));
+        near.extend(mesh.near(|node| frame.meets(node)));
         for triangles in near.chunks(BATCH) {
             let batch = LeafBatch::gather(triangles, |triangle| mesh.corners(triangle));
-            leaves.visit(&batch, &mut *counts, |triangle, of_mesh| {
+            leaves.visit(&batch, |triangle, of_mesh| {
                 let of_field = field.id(triangle);
                 let pair = if self.larger == 0 { [of_field, of_mesh] } else { [of_mesh, of_field] };
                 found.push(Candidate::new(pair));
             });
         }
+        counts.cells += frame.cells.get();
     }
 
     /// Returns the surfaces that are known by now and have doubles. A descent may leave these out, as they have no contacts.
@@ -311,7 +314,7 @@ impl<'a> BvhDescent<'a> {
     }
 
     /// Replaces `near` by the triangles of the larger mesh that are near the box of the other one.
-    pub(crate) fn list_near(&self, near: &mut Vec<u32>, mut counters: impl Counters) {
+    pub(crate) fn list_near(&self, near: &mut Vec<u32>, counts: &mut DescentCounts) {
         let [mesh1, mesh2] = self.meshes;
         let magnitudes = self.meshes.map(MeshView::magnitude);
         let in_frame1 = BoxTest::new(magnitudes, &self.placement12, self.margin);
@@ -323,7 +326,7 @@ impl<'a> BvhDescent<'a> {
             whole.meets(node)
         };
         near.extend(mesh1.near(meets));
-        counters.aabb_tests(tested.get());
+        counts.aabb_tests += tested.get();
     }
 
     /// Calls `found` with the pairs of triangles in `near`, in any order, until it breaks. `may_reject` returns true if pairs
@@ -331,7 +334,7 @@ impl<'a> BvhDescent<'a> {
     pub(crate) fn pairs(
         &self,
         near: &[u32],
-        mut counters: impl Counters,
+        counts: &mut DescentCounts,
         may_reject: impl Fn(usize, u32) -> bool,
         mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
@@ -362,7 +365,7 @@ impl<'a> BvhDescent<'a> {
             let meets = |node| meets(&group, node);
             self.pairs_of_four(triangles, &test, meets, &may_reject, &mut found)
         });
-        counters.aabb_tests(tested.get());
+        counts.aabb_tests += tested.get();
         flow
     }
 

@@ -24,7 +24,7 @@ impl Field<'_> {
     pub(crate) fn is_near(self, mesh: &MeshView<'_>, mesh_pose: &Pose, prediction: Real) -> bool {
         let (placement, root) = (Placement::new(mesh_pose), mesh.root());
         let frame = FieldFrame::new(&self, &placement, prediction.max(0.0));
-        frame.meets(TestedBox::new(root.mins, root.maxs), ())
+        frame.meets(TestedBox::new(root.mins, root.maxs))
     }
 
     /// Returns Parry's number of a triangle: left ones first, along z, then x.

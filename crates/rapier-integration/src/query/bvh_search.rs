@@ -8,7 +8,7 @@ use glamx::{DMat3, DVec3, Vec3};
 use parry3d::math::{Real, Vector};
 use parry3d::partitioning::{BvhNodeIndex, TraversalAction};
 use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair, best_first};
-use sbbk_core::traverse::Placement;
+use sbbk_core::traverse::{DescentCounts, Placement};
 
 use crate::mesh::MeshView;
 use crate::pair::{BvhDescent, ROUNDING, STRETCH, WIDE};
@@ -244,8 +244,9 @@ impl BvhSearch<'_> {
     fn visit_near(&self, limit: f64, visit: impl FnMut([u32; 2]) -> ControlFlow<()>) {
         let (margin, near) = ((limit.max(0.0) as Real).next_up(), &mut Vec::new());
         let descent = BvhDescent::new(self.meshes, self.placement, margin, None);
-        descent.list_near(near, ());
-        let _ = descent.pairs(near, (), |_, _| false, visit);
+        let counts = &mut DescentCounts::default();
+        descent.list_near(near, counts);
+        let _ = descent.pairs(near, counts, |_, _| false, visit);
     }
 
     /// Returns the normal of a contact in the frames of both meshes.

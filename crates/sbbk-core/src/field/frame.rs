@@ -8,12 +8,13 @@
 //! underflow, so bounds of heights are wider by `γ_4`. Boxes are turned in f64, with a dozen
 //! roundings of `2⁻⁵³`: they grow by `1e-14` of their coordinates.
 
+use std::cell::Cell;
 use std::ops::Range;
 
 use glamx::{DMat3, DVec3, Vec3};
 
 use super::HeightGrid;
-use crate::traverse::{Counters, Placement, TestedBox};
+use crate::traverse::{Placement, TestedBox};
 use crate::volumes::rounding::gamma;
 
 /// Cells under a node up to which their heights are read; a node above more is taken apart at once.
@@ -28,6 +29,8 @@ pub struct FieldFrame<'a, F> {
     absolute: DMat3,
     /// The margin in the frame of the field.
     pub(super) reach: f64,
+    /// Reads of cells so far.
+    pub cells: Cell<u64>,
 }
 
 /// A range of cells and the heights at which it can touch.
@@ -45,18 +48,23 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
     /// frame, will be found. A pose that is not finite is nowhere.
     pub fn new(field: &'a F, placement: &Placement, margin: f32) -> Self {
         let reach = f64::from(margin) * placement.scale().max(1.0) * (1.0 + 1e-12);
-        Self { field, placement: *placement, absolute: placement.rotation.abs(), reach }
+        let absolute = placement.rotation.abs();
+        Self { field, placement: *placement, absolute, reach, cells: Cell::new(0) }
     }
 
     /// Returns true if a triangle in a box of the mesh's frame may touch the field. Conservative.
-    pub fn meets(&self, tested: TestedBox, mut counters: impl Counters) -> bool {
+    pub fn meets(&self, tested: TestedBox) -> bool {
         let (centre, extent) = tested.centre_extent();
         // Centre and half-lengths are rounded: what they lose is a part of their size.
         let lost = gamma(4) * (centre.abs() + extent).max_element();
         let middle = self.placed(centre);
         let half = self.absolute * (extent + Vec3::splat(lost)).as_dvec3();
         let cells = self.cells_between(middle - half, middle + half);
-        cells.is_some_and(|cells| cells.count() > READ_LIMIT || self.are_met(&cells, &mut counters))
+        cells.is_some_and(|cells| cells.count() > READ_LIMIT || self.are_met(&cells))
+    }
+
+    pub(super) fn count_reads(&self, count: usize) {
+        self.cells.set(self.cells.get() + count as u64);
     }
 
     /// A point of the mesh in the frame of the field.
@@ -82,10 +90,10 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
     }
 
     /// True unless the corners of the cells are all above or all below. A NaN is neither.
-    fn are_met(&self, cells: &CellRange, counters: &mut impl Counters) -> bool {
+    fn are_met(&self, cells: &CellRange) -> bool {
         let (mut is_one_below, mut is_one_above) = (false, false);
         for column in cells.columns.start..=cells.columns.end {
-            counters.count(|counts| counts.cells += cells.rows.len() as u64);
+            self.count_reads(cells.rows.len());
             for &height in &self.field.heights(column)[cells.rows.start..=cells.rows.end] {
                 is_one_below |= height <= cells.high;
                 is_one_above |= height >= cells.low;

@@ -3,7 +3,6 @@ use glamx::{DVec3, Vec3};
 use super::{FieldFrame, FieldTriangle, HeightGrid};
 use crate::leaf::PlacedTest;
 use crate::simd::bits;
-use crate::traverse::Counters;
 use crate::tree::LeafBatch;
 
 /// Finds the triangles of a field near batches of triangles of a mesh. Made once a query.
@@ -22,12 +21,7 @@ impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
 
     /// Calls `found` with a triangle of the field and the index of a triangle of `batch`, for all
     /// pairs within the margin of the frame and few others.
-    pub fn visit(
-        &self,
-        batch: &LeafBatch,
-        mut counters: impl Counters,
-        mut found: impl FnMut(FieldTriangle, u32),
-    ) {
+    pub fn visit(&self, batch: &LeafBatch, mut found: impl FnMut(FieldTriangle, u32)) {
         let Self { frame, test } = self;
         let corners = (0..batch.count()).flat_map(|lane| batch.corners(lane));
         let (low, high) = corners
@@ -40,7 +34,7 @@ impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
         };
         let placed = test.place(batch);
         for column in cells.columns.clone() {
-            counters.count(|counts| counts.cells += cells.rows.len() as u64);
+            frame.count_reads(cells.rows.len());
             let lines = [column, column + 1].map(|line| frame.field.heights(line));
             for row in cells.rows.clone() {
                 let [a, b] = lines.map(|line| [line[row], line[row + 1]]);

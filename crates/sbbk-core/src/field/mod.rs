@@ -45,10 +45,10 @@
 //! let mut nodes = vec![tree.root()];
 //! while let Some(node) = nodes.pop() {
 //!     let aabb = node.aabb();
-//!     if frame.meets(TestedBox::new(aabb.min, aabb.max), ()) {
+//!     if frame.meets(TestedBox::new(aabb.min, aabb.max)) {
 //!         nodes.extend(node.children().into_iter().flatten());
 //!         if let Some(leaf) = node.leaf() {
-//!             leaves.visit(leaf, (), |cell, index| near.push((cell, index)));
+//!             leaves.visit(leaf, |cell, index| near.push((cell, index)));
 //!         }
 //!     }
 //! }

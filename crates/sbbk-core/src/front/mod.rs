@@ -18,7 +18,7 @@
 //! ```
 //! use glamx::Pose3;
 //! use sbbk_core::front::Front;
-//! use sbbk_core::traverse::{DescentCounts, PairFrame, Placement};
+//! use sbbk_core::traverse::{PairFrame, Placement};
 //! # use sbbk_core::tree::Tree;
 //! # use glamx::Vec3;
 //!
@@ -30,9 +30,8 @@
 //! for step in 0..3 {
 //!     let pos12 = Pose3::translation(0.0, 0.0, 0.9 + 1e-4 * step as f32);
 //!     let mut frame = PairFrame::new((&tree, &tree), Placement::new(&pos12), 0.02);
-//!     let mut counts = DescentCounts::default();
-//!     front.visit((&tree, &tree), &mut frame, &mut counts, |_leaf1, _leaf2| {});
-//!     tests.push(counts.aabb_tests);
+//!     front.visit((&tree, &tree), &mut frame, |_leaf1, _leaf2| {});
+//!     tests.push(frame.counts.aabb_tests);
 //! }
 //! assert!(tests[0] > tests[1] && tests[1] == tests[2]);
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
@@ -42,7 +41,7 @@
 mod figure;
 
 use crate::simd::bits;
-use crate::traverse::{Counters, Opening, Overlap, PairFrame, Sides, SlotPair, leaves_at};
+use crate::traverse::{Opening, Overlap, PairFrame, Sides, SlotPair, leaves_at};
 use crate::tree::{LeafBatch, Slot, Tree};
 
 /// The pairs of nodes where the last descent of two trees stopped: see [the module](self).
@@ -94,15 +93,14 @@ impl Front {
         &mut self,
         trees: (&Tree, &Tree),
         frame: &mut PairFrame,
-        mut counters: impl Counters,
         visit: impl FnMut(&LeafBatch, &LeafBatch),
     ) {
-        counters.count(|counts| counts.sphere_tests += 1);
+        frame.counts.sphere_tests += 1;
         if !frame.placement.is_finite() || !frame.spheres_meet(trees.0, trees.1) {
             self.clear();
             return;
         }
-        self.update(&mut TreePair { trees, frame, counters, visit });
+        self.update(&mut TreePair { trees, frame, visit });
     }
 
     fn update(&mut self, pair: &mut impl PairTest) {
@@ -167,21 +165,20 @@ trait PairTest {
 }
 
 /// Two trees at a pose.
-struct TreePair<'a, C, V> {
+struct TreePair<'a, V> {
     trees: (&'a Tree, &'a Tree),
     frame: &'a mut PairFrame,
-    counters: C,
     visit: V,
 }
 
-impl<C, V> TreePair<'_, C, V> {
+impl<V> TreePair<'_, V> {
     fn leaves(&self, opening: &Opening) -> u32 {
         let is_pair = |lane: &usize| leaves_at(self.trees, opening.pair(*lane)).is_some();
         bits(opening.lanes).filter(is_pair).fold(0, |leaves, lane| leaves | 1 << lane)
     }
 }
 
-impl<C: Counters, V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, C, V> {
+impl<V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, V> {
     fn roots(&self) -> (Opening, u32) {
         let nodes = (Slot::ROOT.node(), Slot::ROOT.node());
         let opening = Opening { nodes, sides: Sides::Both, same_lane: 0, lanes: 0b0001 };
@@ -194,14 +191,13 @@ impl<C: Counters, V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, C,
     }
 
     fn visit(&mut self, pair: SlotPair) {
-        self.counters.count(|counts| counts.leaf_pairs += 1);
+        self.frame.counts.leaf_pairs += 1;
         if let Some((leaf1, leaf2)) = leaves_at(self.trees, pair) {
             (self.visit)(leaf1, leaf2);
         }
     }
 
     fn meeting(&mut self, opening: &Opening, lanes: u32) -> u32 {
-        let mut overlap = Overlap { frame: &mut *self.frame, counters: &mut self.counters };
-        opening.compare(self.trees, lanes, &mut overlap).0
+        opening.compare(self.trees, lanes, &mut Overlap(self.frame)).0
     }
 }

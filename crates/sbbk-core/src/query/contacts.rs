@@ -32,7 +32,7 @@ pub fn contacts(
     let widened = margin as f32 * (1.0 + gamma(4)) + f32::MIN_POSITIVE;
     let mut frame = PairFrame::new(trees, placement, widened);
     let test = LeafTest::new(&frame);
-    descend(trees, &mut frame, &mut scratch.descent, (), |batch1, batch2| {
+    descend(trees, &mut frame, &mut scratch.descent, |batch1, batch2| {
         test.survivors(batch1, batch2, |lane1, lane2| {
             let (one, two) = (batch1.triangle(lane1), batch2.triangle(lane2));
             if let Some(pair) = FoundPair::of(&placement, one, two, margin) {

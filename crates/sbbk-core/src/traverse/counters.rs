@@ -1,26 +1,5 @@
 use std::ops::AddAssign;
 
-/// Counts the work of a descent. `()` counts nothing and compiles to nothing.
-pub trait Counters {
-    /// Changes the counts.
-    fn count(&mut self, change: impl FnOnce(&mut DescentCounts));
-
-    /// `count` pairs of nodes were compared by their boxes.
-    fn aabb_tests(&mut self, count: u32) {
-        self.count(|counts| counts.aabb_tests += u64::from(count));
-    }
-}
-
-impl Counters for () {
-    fn count(&mut self, _: impl FnOnce(&mut DescentCounts)) {}
-}
-
-impl<C: Counters> Counters for &mut C {
-    fn count(&mut self, change: impl FnOnce(&mut DescentCounts)) {
-        (**self).count(change);
-    }
-}
-
 /// The work of one or more descents.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct DescentCounts {
@@ -34,12 +13,6 @@ pub struct DescentCounts {
     pub leaf_pairs: u64,
     /// Reads of cells of height fields.
     pub cells: u64,
-}
-
-impl Counters for DescentCounts {
-    fn count(&mut self, change: impl FnOnce(&mut Self)) {
-        change(self);
-    }
 }
 
 impl AddAssign for DescentCounts {

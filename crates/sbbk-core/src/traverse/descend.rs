@@ -7,7 +7,6 @@
 //! tests between inner nodes and `2^(2(n-1))` between leaves. A descent of one side at a time makes
 //! `2^(2n-1) - 1` tests.
 
-use super::counters::Counters;
 use super::expand::{SlotPair, expand, leaves_at};
 use super::frame::PairFrame;
 use super::overlap::Overlap;
@@ -36,11 +35,10 @@ pub fn descend(
     trees: (&Tree, &Tree),
     frame: &mut PairFrame,
     scratch: &mut DescentScratch,
-    mut counters: impl Counters,
     visit: impl FnMut(&LeafBatch, &LeafBatch),
 ) {
-    let start = roots(trees, frame, &mut counters);
-    descend_from(start.as_slice(), trees, frame, scratch, counters, visit);
+    let start = roots(trees, frame);
+    descend_from(start.as_slice(), trees, frame, scratch, visit);
 }
 
 /// Replaces `pairs` by up to `count` pairs of nodes or a few more, or by all pairs of leaves if these are fewer.
@@ -50,10 +48,9 @@ pub fn begin_descent(
     frame: &mut PairFrame,
     count: usize,
     pairs: &mut Vec<NodePair>,
-    mut counters: impl Counters,
 ) {
     pairs.clear();
-    pairs.extend(roots(trees, frame, &mut counters));
+    pairs.extend(roots(trees, frame));
     // A queue. Pairs of leaves go back to its end, until nothing else is left.
     let (mut first, mut leaves) = (0, 0);
     while let waiting = pairs.len() - first
@@ -67,7 +64,7 @@ pub fn begin_descent(
             pairs.push(pair);
         } else {
             leaves = 0;
-            replace(trees, pair, frame, &mut counters, |pair| pairs.push(pair));
+            replace(trees, pair, frame, |pair| pairs.push(pair));
         }
     }
     pairs.drain(..first);
@@ -79,7 +76,6 @@ pub fn descend_from(
     trees: (&Tree, &Tree),
     frame: &mut PairFrame,
     scratch: &mut DescentScratch,
-    mut counters: impl Counters,
     mut visit: impl FnMut(&LeafBatch, &LeafBatch),
 ) {
     let stack = &mut scratch.stack;
@@ -87,27 +83,23 @@ pub fn descend_from(
     stack.extend_from_slice(pairs);
     while let Some(pair) = stack.pop() {
         if let Some((leaf1, leaf2)) = leaves_at(trees, pair.0) {
-            counters.count(|counts| counts.leaf_pairs += 1);
+            frame.counts.leaf_pairs += 1;
             visit(leaf1, leaf2);
         } else {
-            replace(trees, pair, frame, &mut counters, |pair| stack.push(pair));
+            replace(trees, pair, frame, |pair| stack.push(pair));
         }
     }
 }
 
 /// Returns the roots if these come within the margin.
-fn roots(
-    (tree1, tree2): (&Tree, &Tree),
-    frame: &mut PairFrame,
-    counters: &mut impl Counters,
-) -> Option<NodePair> {
+fn roots((tree1, tree2): (&Tree, &Tree), frame: &mut PairFrame) -> Option<NodePair> {
     if tree1.sphere().is_some() && tree2.sphere().is_some() {
-        counters.count(|counts| counts.sphere_tests += 1);
+        frame.counts.sphere_tests += 1;
         if !frame.spheres_meet(tree1, tree2) {
             return None;
         }
     }
-    counters.aabb_tests(1);
+    frame.counts.aabb_tests += 1;
     let [root1, root2] = [tree1, tree2].map(|tree| (tree.children(0), Same(0)));
     (frame.boxes_meet(&NodeLanes::new(root1, root2, 1)) != 0)
         .then_some(NodePair((Slot::ROOT, Slot::ROOT)))
@@ -119,9 +111,7 @@ fn replace(
     trees: (&Tree, &Tree),
     NodePair(slots): NodePair,
     frame: &mut PairFrame,
-    counters: &mut impl Counters,
     mut push: impl FnMut(NodePair),
 ) {
-    let mut compare = Overlap { frame, counters };
-    expand(trees, slots, &mut compare, |slots, ()| push(NodePair(slots)));
+    expand(trees, slots, &mut Overlap(frame), |slots, ()| push(NodePair(slots)));
 }

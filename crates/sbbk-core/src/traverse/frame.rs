@@ -2,6 +2,7 @@ use glamx::DMat3;
 use wide::f32x4;
 
 use super::correspondence::Correspondence;
+use super::counters::DescentCounts;
 use super::placement::{Placement, longest_row};
 use super::side::{BothSides, NodeLanes};
 use crate::simd::{Spread, V3, dot, each};
@@ -28,6 +29,8 @@ pub struct PairFrame {
     to_frame2: Rows,
     /// Computed when a descent first reaches k-DOPs in both trees. Shallow pairs never do.
     correspondence: Option<Correspondence>,
+    /// Work of the descents so far.
+    pub counts: DescentCounts,
 }
 
 /// Allowances of comparisons of boxes, in frame 1 and in frame 2.
@@ -117,6 +120,7 @@ impl PairFrame {
             to_frame1: Rows::new(rotation),
             to_frame2: Rows::new(inverse),
             correspondence: None,
+            counts: DescentCounts::default(),
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! * [`PairFrame`] holds the relative pose, and the kernel that compares boxes.
 //! * [`descend`] traverses both trees and calls a closure with pairs of leaves.
-//! * [`Counters`] count the tests, or cost nothing.
+//! * [`DescentCounts`] count the tests.
 //! * [`Slack`] plans when the candidates of the last descent serve again.
 //! * [`BoxTest`] compares boxes of other hierarchies, one pair at a time.
 
@@ -22,7 +22,7 @@ mod slack;
 mod toward;
 
 pub use boxes::{BoxTest, NearBox, TestedBox};
-pub use counters::{Counters, DescentCounts};
+pub use counters::DescentCounts;
 pub use descend::{DescentScratch, NodePair, begin_descent, descend, descend_from};
 pub(crate) use expand::{Compare, Opening, Sides, SlotPair, expand, leaves_at};
 pub(crate) use frame::Along;

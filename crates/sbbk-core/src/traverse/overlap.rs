@@ -2,7 +2,6 @@
 
 use wide::f32x4;
 
-use super::counters::Counters;
 use super::expand::Compare;
 use super::frame::PairFrame;
 use super::side::NodeLanes;
@@ -24,23 +23,20 @@ impl PairFrame {
 
 /// Keeps the children whose volumes come within the margin. Compares boxes first, then k-DOPs if
 /// both sides have them.
-pub(crate) struct Overlap<'a, C> {
-    pub(crate) frame: &'a mut PairFrame,
-    pub(crate) counters: &'a mut C,
-}
+pub(crate) struct Overlap<'a>(pub(crate) &'a mut PairFrame);
 
-impl<C: Counters> Compare for Overlap<'_, C> {
+impl Compare for Overlap<'_> {
     type Key = ();
 
     #[inline(always)]
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [(); 4]) {
-        self.counters.aabb_tests(nodes.lanes.count_ones());
-        let meeting = self.frame.boxes_meet(nodes) & nodes.lanes;
+        let Self(frame) = self;
+        frame.counts.aabb_tests += u64::from(nodes.lanes.count_ones());
+        let meeting = frame.boxes_meet(nodes) & nodes.lanes;
         match &nodes.kdops {
             Some(kdops) if meeting != 0 => {
-                let tests = u64::from(meeting.count_ones());
-                self.counters.count(|counts| counts.kdop_tests += tests);
-                (self.frame.correspondence().kdops_meet(kdops, meeting), [(); 4])
+                frame.counts.kdop_tests += u64::from(meeting.count_ones());
+                (frame.correspondence().kdops_meet(kdops, meeting), [(); 4])
             }
             _ => (meeting, [(); 4]),
         }

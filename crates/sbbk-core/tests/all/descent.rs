@@ -13,14 +13,14 @@ pub fn survivors(
     let mut frame = PairFrame::new(trees, Placement::new(pos12), margin);
     let test = LeafTest::new(&frame);
     let mut pairs = BTreeSet::new();
-    let (mut counts, mut scratch) = (DescentCounts::default(), DescentScratch::default());
-    descend(trees, &mut frame, &mut scratch, &mut counts, |batch1, batch2| {
+    let mut scratch = DescentScratch::default();
+    descend(trees, &mut frame, &mut scratch, |batch1, batch2| {
         test.survivors(batch1, batch2, |i, j| {
             let is_new = pairs.insert((batch1.triangles()[i], batch2.triangles()[j]));
             assert!(is_new, "a pair of triangles was visited twice");
         });
     });
-    (pairs, counts)
+    (pairs, frame.counts)
 }
 
 fn tree(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree {

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use glamx::{DVec3, Pose3, Quat, Vec3};
 use sbbk_core::field::{FieldFrame, FieldLeaves, FieldTriangle, HeightGrid};
 use sbbk_core::surface::{Facets, RayTriangles, Surface};
-use sbbk_core::traverse::{Counters, DescentCounts, TestedBox};
+use sbbk_core::traverse::{DescentCounts, TestedBox};
 use sbbk_core::tree::{LayerPlan, Tree};
 
 /// A mesh as the tree takes it.
@@ -231,13 +231,14 @@ pub fn descend_field<F: HeightGrid>(
     let mut nodes = vec![tree.root()];
     while let Some(node) = nodes.pop() {
         let aabb = node.aabb();
-        counts.aabb_tests(1);
-        if frame.meets(TestedBox::new(aabb.min, aabb.max), &mut counts) {
+        counts.aabb_tests += 1;
+        if frame.meets(TestedBox::new(aabb.min, aabb.max)) {
             nodes.extend(node.children().into_iter().flatten());
             if let Some(leaf) = node.leaf() {
-                leaves.visit(leaf, &mut counts, &mut found);
+                leaves.visit(leaf, &mut found);
             }
         }
     }
+    counts.cells = frame.cells.get();
     counts
 }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use parry3d::shape::HalfSpace;
-use sbbk_core::traverse::{BoxTest, Counters, Placement, TestedBox};
+use sbbk_core::traverse::{BoxTest, DescentCounts, Placement, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::parts::PlacedPart;
@@ -20,19 +20,19 @@ pub(super) fn triangles_near(
     shape: ConvexShape<'_>,
     mesh: &MeshView<'_>,
     margin: Real,
-    counters: impl Counters,
+    counts: &mut DescentCounts,
     found: impl FnMut(u32) -> ControlFlow<()>,
 ) {
     let magnitude = mesh.magnitude();
     match shape {
         ConvexShape::HalfSpace(half_space) => {
             let (normal, height) = plane(&placed.placement, half_space, magnitude, margin);
-            visit(mesh, |node| lowest(node, normal) <= height, counters, found);
+            visit(mesh, |node| lowest(node, normal) <= height, counts, found);
         }
         ConvexShape::Ball(_) if !placed.origin_in_mesh.is_finite() => {}
         ConvexShape::Ball(ball) => {
             let centre = placed.origin_in_mesh.as_vec3();
-            visit(mesh, near_ball(centre, ball.radius + margin, magnitude), counters, found);
+            visit(mesh, near_ball(centre, ball.radius + margin, magnitude), counts, found);
         }
         _ => {
             let (min, max, radius) = placed.extent.bounds();
@@ -40,7 +40,7 @@ pub(super) fn triangles_near(
             let reach = ((f64::from(margin) + f64::from(radius)) as Real).next_up();
             let test = BoxTest::new([magnitude, size], &placed.inverse(), reach);
             let near = test.of(TestedBox::new(min, max));
-            visit(mesh, |node| near.meets(node), counters, found);
+            visit(mesh, |node| near.meets(node), counts, found);
         }
     }
 }
@@ -50,7 +50,7 @@ pub(super) fn triangles_near(
 fn visit(
     mesh: &MeshView<'_>,
     is_near: impl Fn(TestedBox) -> bool,
-    mut counters: impl Counters,
+    counts: &mut DescentCounts,
     found: impl FnMut(u32) -> ControlFlow<()>,
 ) {
     let tested = Cell::new(0);
@@ -59,7 +59,7 @@ fn visit(
         is_near(node)
     };
     let _ = mesh.near(counted).try_for_each(found);
-    counters.aabb_tests(tested.get());
+    counts.aabb_tests += tested.get();
 }
 
 /// Returns a test for boxes within reach of a point.

@@ -214,7 +214,7 @@ impl PairQuery for ConvexQuery<'_> {
         parts.intersecting(&self.pair.mesh_box(margin), self.near_mesh(margin), |index| {
             parts.with(index, |part| {
                 let placed = self.placed(index, &part, &mut scratch.at_hand);
-                triangles_near(placed, part.shape, mesh, margin, &mut *counts, |triangle| {
+                triangles_near(placed, part.shape, mesh, margin, counts, |triangle| {
                     found.push(Candidate::new(mesh_place.swap([triangle, index])));
                     ControlFlow::Continue(())
                 });

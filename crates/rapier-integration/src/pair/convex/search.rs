@@ -9,7 +9,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::traverse::{Placement, TestedBox};
+use sbbk_core::traverse::{DescentCounts, Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
@@ -120,7 +120,8 @@ impl<'a> ConvexSearch<'a> {
     pub(crate) fn first_within(&self, distance: f64) -> Option<u32> {
         let radius = f64::from(self.convex.radius());
         let (mut found, margin) = (None, (distance as Real).next_up());
-        triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
+        let counts = &mut DescentCounts::default();
+        triangles_near(&self.placed, self.convex, &self.mesh, margin, counts, |triangle| {
             let corners = self.placed.in_part(self.mesh.corners(triangle));
             let reach = distance + TOUCHING * self.size(&corners) + radius;
             if core_touches(&self.placed, &corners, self.convex, &self.hull, reach) {
@@ -177,7 +178,8 @@ impl<'a> ConvexSearch<'a> {
 
     fn visit_near(&self, limit: f64, mut visit: impl FnMut(u32)) {
         let margin = (limit.max(0.0) as Real).next_up();
-        triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
+        let counts = &mut DescentCounts::default();
+        triangles_near(&self.placed, self.convex, &self.mesh, margin, counts, |triangle| {
             visit(triangle);
             ControlFlow::Continue(())
         });

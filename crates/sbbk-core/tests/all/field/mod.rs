@@ -17,7 +17,7 @@ fn tree(soup: &Soup) -> Tree {
 
 /// Runs [`FieldFrame::meets`] for a box.
 fn meets(grid: &Grid, pose: &Pose3, [min, max]: [Vec3; 2], margin: f32) -> bool {
-    FieldFrame::new(grid, &Placement::new(pose), margin).meets(TestedBox::new(min, max), ())
+    FieldFrame::new(grid, &Placement::new(pose), margin).meets(TestedBox::new(min, max))
 }
 
 /// The box around a mesh.
