@@ -8,7 +8,7 @@
 
 use super::{Front, PairTest};
 use crate::simd::bits;
-use crate::traverse::{Opening, Sides, SlotPair};
+use crate::traverse::{NodePair, Opening, Sides};
 use crate::tree::Slot;
 
 /// The tree at one time. T*n* is the slot with the packed number n.
@@ -27,14 +27,14 @@ impl PairTest for Figure<'_> {
         (Opening { nodes: (0, 0), sides: Sides::First, same_lane: 0, lanes: 0b0100 }, 0)
     }
 
-    fn open(&self, pair: SlotPair) -> (Opening, u32) {
+    fn open(&self, pair: NodePair) -> (Opening, u32) {
         let n = number(pair.0);
         let lanes = if n == 6 { 0b0001 } else { 0b0101 };
         let leaves = if n >= 8 { lanes } else { 0 };
         (Opening { nodes: (n, 0), sides: Sides::First, same_lane: 0, lanes }, leaves)
     }
 
-    fn visit(&mut self, _: SlotPair) {}
+    fn visit(&mut self, _: NodePair) {}
 
     fn meeting(&mut self, opening: &Opening, asked: u32) -> u32 {
         let mut meeting = 0;

@@ -41,7 +41,7 @@
 mod figure;
 
 use crate::simd::bits;
-use crate::traverse::{Opening, Overlap, PairFrame, Sides, SlotPair, leaves_at};
+use crate::traverse::{NodePair, Opening, Overlap, PairFrame, Sides, leaves_at};
 use crate::tree::{LeafBatch, Slot, Tree};
 
 /// The pairs of nodes where the last descent of two trees stopped: see [the module](self).
@@ -157,9 +157,9 @@ trait PairTest {
     /// The pair of roots, as the only lane, and the mask of lanes that hold a pair of leaves.
     fn roots(&self) -> (Opening, u32);
     /// The pairs below a pair that is not a pair of leaves, and the mask of pairs of leaves.
-    fn open(&self, pair: SlotPair) -> (Opening, u32);
+    fn open(&self, pair: NodePair) -> (Opening, u32);
     /// Counts and visits a pair of leaves.
-    fn visit(&mut self, pair: SlotPair);
+    fn visit(&mut self, pair: NodePair);
     /// The lanes of `lanes` whose pairs come within the margin.
     fn meeting(&mut self, opening: &Opening, lanes: u32) -> u32;
 }
@@ -185,12 +185,12 @@ impl<V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, V> {
         (opening, self.leaves(&opening))
     }
 
-    fn open(&self, pair: SlotPair) -> (Opening, u32) {
+    fn open(&self, pair: NodePair) -> (Opening, u32) {
         let opening = Opening::of(self.trees, pair);
         (opening, self.leaves(&opening))
     }
 
-    fn visit(&mut self, pair: SlotPair) {
+    fn visit(&mut self, pair: NodePair) {
         self.frame.counts.leaf_pairs += 1;
         if let Some((leaf1, leaf2)) = leaves_at(self.trees, pair) {
             (self.visit)(leaf1, leaf2);

@@ -10,9 +10,9 @@ use crate::contact::contact;
 use crate::leaf::LeafTest;
 use crate::simd::{Spread, dot};
 use crate::traverse::{
-    Compare, NodeLanes, PairFrame, Placement, SignedGaps, Toward, expand, leaves_at,
+    Compare, NodeLanes, NodePair, PairFrame, Placement, SignedGaps, Toward, expand, leaves_at,
 };
-use crate::tree::{LeafBatch, Slot, Tree};
+use crate::tree::{LeafBatch, Tree};
 
 use super::seek::{FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, TrianglePair};
@@ -172,17 +172,17 @@ fn near_leaves<'a>(
     trees: (&'a Tree, &'a Tree),
     frame: &PairFrame,
 ) -> (&'a LeafBatch, &'a LeafBatch) {
-    let mut slots = (Slot::ROOT, Slot::ROOT);
+    let mut next = NodePair::ROOTS;
     loop {
-        if let Some(leaves) = leaves_at(trees, slots) {
+        if let Some(leaves) = leaves_at(trees, next) {
             return leaves;
         }
         let mut nearest = f32::INFINITY;
-        let pair = slots;
+        let pair = next;
         expand(trees, pair, &mut Centres(frame), |children, squared| {
             // The first one even if all are NaN.
-            if slots == pair || squared < nearest {
-                (slots, nearest) = (children, squared);
+            if next == pair || squared < nearest {
+                (next, nearest) = (children, squared);
             }
         });
     }

@@ -6,13 +6,13 @@
 
 use std::ops::ControlFlow;
 
-use crate::traverse::{Compare, DescentScratch, SlotPair, expand, leaves_at};
-use crate::tree::{LeafBatch, Slot, Tree};
+use crate::traverse::{Compare, DescentScratch, NodePair, expand, leaves_at};
+use crate::tree::{LeafBatch, Tree};
 
 /// Memory of a query, kept by the caller: after the first few nothing is allocated.
 #[derive(Clone, Debug, Default)]
 pub struct SearchScratch {
-    stack: Vec<(f32, SlotPair)>,
+    stack: Vec<(f32, NodePair)>,
     pub(super) descent: DescentScratch,
 }
 
@@ -28,8 +28,8 @@ pub(super) fn seek<B: Compare<Key = f32>>(
     scratch: &mut SearchScratch,
     mut leaves: impl FnMut(&mut B, &LeafBatch, &LeafBatch),
 ) {
-    let roots = (f32::NEG_INFINITY, (Slot::ROOT, Slot::ROOT));
-    best_first(&mut scratch.stack, roots, |key, slots, stack| {
+    let roots = (f32::NEG_INFINITY, NodePair::ROOTS);
+    best_first(&mut scratch.stack, roots, |key, pair, stack| {
         if limit(bounds) == FOUND {
             return ControlFlow::Break(());
         }
@@ -37,10 +37,10 @@ pub(super) fn seek<B: Compare<Key = f32>>(
         if key > limit(bounds) {
             return ControlFlow::Continue(());
         }
-        if let Some((leaf1, leaf2)) = leaves_at(trees, slots) {
+        if let Some((leaf1, leaf2)) = leaves_at(trees, pair) {
             leaves(bounds, leaf1, leaf2);
         } else {
-            expand(trees, slots, bounds, |slots, key| stack.push((key, slots)));
+            expand(trees, pair, bounds, |pair, key| stack.push((key, pair)));
         }
         ControlFlow::Continue(())
     });

@@ -7,12 +7,12 @@
 //! tests between inner nodes and `2^(2(n-1))` between leaves. A descent of one side at a time makes
 //! `2^(2n-1) - 1` tests.
 
-use super::expand::{SlotPair, expand, leaves_at};
+use super::expand::{NodePair, expand, leaves_at};
 use super::frame::PairFrame;
 use super::overlap::Overlap;
 use super::side::NodeLanes;
 use crate::simd::Same;
-use crate::tree::{LeafBatch, Slot, Tree};
+use crate::tree::{LeafBatch, Tree};
 
 /// Memory of descents, kept by the caller: after a few queries nothing is allocated.
 ///
@@ -21,10 +21,6 @@ use crate::tree::{LeafBatch, Slot, Tree};
 pub struct DescentScratch {
     stack: Vec<NodePair>,
 }
-
-/// Two nodes whose volumes come within the margin.
-#[derive(Copy, Clone, Debug)]
-pub struct NodePair(SlotPair);
 
 /// Calls `visit` with all pairs of leaves whose volumes, and those of all their ancestors, come
 /// within the margin.
@@ -59,12 +55,12 @@ pub fn begin_descent(
     {
         let pair = pairs[first];
         first += 1;
-        if leaves_at(trees, pair.0).is_some() {
+        if leaves_at(trees, pair).is_some() {
             leaves += 1;
             pairs.push(pair);
         } else {
             leaves = 0;
-            replace(trees, pair, frame, |pair| pairs.push(pair));
+            expand(trees, pair, &mut Overlap(frame), |pair, ()| pairs.push(pair));
         }
     }
     pairs.drain(..first);
@@ -82,11 +78,11 @@ pub fn descend_from(
     stack.clear();
     stack.extend_from_slice(pairs);
     while let Some(pair) = stack.pop() {
-        if let Some((leaf1, leaf2)) = leaves_at(trees, pair.0) {
+        if let Some((leaf1, leaf2)) = leaves_at(trees, pair) {
             frame.counts.leaf_pairs += 1;
             visit(leaf1, leaf2);
         } else {
-            replace(trees, pair, frame, |pair| stack.push(pair));
+            expand(trees, pair, &mut Overlap(frame), |pair, ()| stack.push(pair));
         }
     }
 }
@@ -101,17 +97,5 @@ fn roots((tree1, tree2): (&Tree, &Tree), frame: &mut PairFrame) -> Option<NodePa
     }
     frame.counts.aabb_tests += 1;
     let [root1, root2] = [tree1, tree2].map(|tree| (tree.children(0), Same(0)));
-    (frame.boxes_meet(&NodeLanes::new(root1, root2, 1)) != 0)
-        .then_some(NodePair((Slot::ROOT, Slot::ROOT)))
-}
-
-/// Calls `push` with the pairs of children of a pair that come within the margin.
-#[inline(always)]
-fn replace(
-    trees: (&Tree, &Tree),
-    NodePair(slots): NodePair,
-    frame: &mut PairFrame,
-    mut push: impl FnMut(NodePair),
-) {
-    expand(trees, slots, &mut Overlap(frame), |slots, ()| push(NodePair(slots)));
+    (frame.boxes_meet(&NodeLanes::new(root1, root2, 1)) != 0).then_some(NodePair::ROOTS)
 }

@@ -4,14 +4,19 @@ use super::side::NodeLanes;
 use crate::simd::{Inner, Outer, Same, Spread, bits};
 use crate::tree::{LeafBatch, Slot, Tree};
 
-/// A pair of nodes.
-pub(crate) type SlotPair = (Slot, Slot);
+/// A node of each of two trees.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct NodePair(pub(crate) Slot, pub(crate) Slot);
 
-/// The leaves at a pair of slots, if both are leaves.
+impl NodePair {
+    pub(crate) const ROOTS: Self = Self(Slot::ROOT, Slot::ROOT);
+}
+
+/// The leaves of a pair, if both nodes are leaves.
 #[inline(always)]
 pub(crate) fn leaves_at<'a>(
     (tree1, tree2): (&'a Tree, &'a Tree),
-    (slot1, slot2): SlotPair,
+    NodePair(slot1, slot2): NodePair,
 ) -> Option<(&'a LeafBatch, &'a LeafBatch)> {
     let (link1, link2) = (tree1.link(slot1), tree2.link(slot2));
     let is_pair = link1.is_leaf() && link2.is_leaf();
@@ -47,7 +52,7 @@ impl Opening {
     /// Returns the pairs below a pair that is not a pair of leaves. A leaf stays, and so does a node much smaller than
     /// the other one.
     #[inline(always)]
-    pub(crate) fn of((tree1, tree2): (&Tree, &Tree), (slot1, slot2): SlotPair) -> Self {
+    pub(crate) fn of((tree1, tree2): (&Tree, &Tree), NodePair(slot1, slot2): NodePair) -> Self {
         let (link1, link2) = (tree1.link(slot1), tree2.link(slot2));
         let [length1, length2] = [tree1.length(slot1), tree2.length(slot2)];
         let stays1 = link1.is_leaf() || !link2.is_leaf() && length2 > LARGER * length1;
@@ -62,13 +67,13 @@ impl Opening {
 
     /// The pair in a lane.
     #[inline(always)]
-    pub(crate) fn pair(&self, lane: usize) -> SlotPair {
+    pub(crate) fn pair(&self, lane: usize) -> NodePair {
         let (lane1, lane2) = match self.sides {
             Sides::Both => (lane >> 1, lane & 1),
             Sides::First => (lane >> 1, self.same_lane),
             Sides::Second => (self.same_lane, lane & 1),
         };
-        (Slot::new(self.nodes.0, lane1), Slot::new(self.nodes.1, lane2))
+        NodePair(Slot::new(self.nodes.0, lane1), Slot::new(self.nodes.1, lane2))
     }
 
     /// Compares the pairs in some of the lanes.
@@ -103,11 +108,11 @@ pub(crate) trait Compare {
 #[inline(always)]
 pub(crate) fn expand<C: Compare>(
     trees: (&Tree, &Tree),
-    slots: SlotPair,
+    pair: NodePair,
     compare: &mut C,
-    mut push: impl FnMut(SlotPair, C::Key),
+    mut push: impl FnMut(NodePair, C::Key),
 ) {
-    let opening = Opening::of(trees, slots);
+    let opening = Opening::of(trees, pair);
     let (mask, keys) = opening.compare(trees, opening.lanes, compare);
     for lane in bits(mask) {
         push(opening.pair(lane), keys[lane]);

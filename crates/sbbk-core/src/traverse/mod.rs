@@ -23,8 +23,9 @@ mod toward;
 
 pub use boxes::{BoxTest, NearBox, TestedBox};
 pub use counters::DescentCounts;
-pub use descend::{DescentScratch, NodePair, begin_descent, descend, descend_from};
-pub(crate) use expand::{Compare, Opening, Sides, SlotPair, expand, leaves_at};
+pub use descend::{DescentScratch, begin_descent, descend, descend_from};
+pub use expand::NodePair;
+pub(crate) use expand::{Compare, Opening, Sides, expand, leaves_at};
 pub(crate) use frame::Along;
 pub use frame::PairFrame;
 pub(crate) use gaps::{SignedGaps, within};
