@@ -46,10 +46,7 @@ const NONE: u32 = u32::MAX;
 
 /// A list of optional indices that are less than its length, in 16 bits each if these are enough.
 #[derive(Clone, Debug)]
-pub(crate) struct CompactIndices(Width);
-
-#[derive(Clone, Debug)]
-enum Width {
+pub(crate) enum CompactIndices {
     Narrow(Box<[u16]>),
     Wide(Box<[u32]>),
 }
@@ -60,22 +57,22 @@ impl CompactIndices {
         // Indices of a list up to this length are less than the low half of `NONE`.
         let is_narrow = numbers.len() <= usize::from(u16::MAX);
         let numbers = numbers.map(|number| number.unwrap_or(NONE));
-        Self(if is_narrow {
-            Width::Narrow(numbers.map(|number| number as u16).collect())
+        if is_narrow {
+            Self::Narrow(numbers.map(|number| number as u16).collect())
         } else {
-            Width::Wide(numbers.collect())
-        })
+            Self::Wide(numbers.collect())
+        }
     }
 
     /// Returns the index at a place; `None` beyond the end of the list.
     #[inline(always)]
     pub(crate) fn get(&self, place: u32) -> Option<u32> {
-        match &self.0 {
-            Width::Narrow(numbers) => {
+        match self {
+            Self::Narrow(numbers) => {
                 let number = *numbers.get(place as usize)?;
                 (number != NONE as u16).then_some(number.into())
             }
-            Width::Wide(numbers) => {
+            Self::Wide(numbers) => {
                 let number = *numbers.get(place as usize)?;
                 (number != NONE).then_some(number)
             }
@@ -84,9 +81,9 @@ impl CompactIndices {
 
     /// Memory in bytes, without this value.
     pub(crate) fn bytes(&self) -> usize {
-        match &self.0 {
-            Width::Narrow(numbers) => size_of_val(&**numbers),
-            Width::Wide(numbers) => size_of_val(&**numbers),
+        match self {
+            Self::Narrow(numbers) => size_of_val(&**numbers),
+            Self::Wide(numbers) => size_of_val(&**numbers),
         }
     }
 }
