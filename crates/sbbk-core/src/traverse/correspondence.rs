@@ -34,14 +34,6 @@ struct Slab {
     slack: f32,
 }
 
-/// Two k-DOPs in each lane, along one slab.
-struct Along {
-    /// From the centre of the one of tree 1 to that of the one of tree 2.
-    offset: f32x4,
-    /// Sum of both half-lengths.
-    reach: f32x4,
-}
-
 impl Correspondence {
     /// `rounding` is the bound for boxes in frame 1. Slabs lose up to six times as much, see
     /// [`rounding`](crate::volumes::rounding).
@@ -79,7 +71,7 @@ impl Correspondence {
     ) -> u32 {
         let mut remaining = candidates;
         for (axis, slab) in self.slabs.iter().enumerate().skip(3) {
-            let Along { offset, reach } = slab.along(axis, slab.slack, kdops);
+            let [offset, reach] = slab.along(axis, slab.slack, kdops);
             remaining &= offset.abs().simd_le(reach).to_bitmask();
             if remaining == 0 {
                 break;
@@ -98,7 +90,7 @@ impl Correspondence {
     ) -> f32x4 {
         let mut largest = f32x4::splat(f32::NEG_INFINITY);
         for (axis, slab) in self.slabs.iter().enumerate().skip(first) {
-            let Along { offset, reach } = slab.along(axis, self.rounding, kdops);
+            let [offset, reach] = slab.along(axis, self.rounding, kdops);
             let gap = (offset.abs() - reach) * f32x4::splat(INVERSE_LENGTHS[axis]);
             largest = largest.fast_max(gap);
         }
@@ -107,14 +99,15 @@ impl Correspondence {
 }
 
 impl Slab {
-    /// Along slab `axis` of tree 1, with reaches longer by `slack`.
+    /// Compares the k-DOPs in each lane along slab `axis` of tree 1. Returns the way from centre 1 to centre 2, and the sum of
+    /// both half-lengths and `slack`.
     #[inline(always)]
     fn along(
         &self,
         axis: usize,
         slack: f32,
         kdops: &KdopLanes<'_, impl Spread, impl Spread>,
-    ) -> Along {
+    ) -> [f32x4; 2] {
         let mut offset = f32x4::splat(self.offset) - kdops.one.centre(axis);
         let mut reach = f32x4::splat(slack) + kdops.one.extent(axis);
         for term in 0..3 {
@@ -123,6 +116,6 @@ impl Slab {
             offset += coefficient * kdops.two.centre(index);
             reach += coefficient.abs() * kdops.two.extent(index);
         }
-        Along { offset, reach }
+        [offset, reach]
     }
 }
