@@ -38,28 +38,12 @@ pub struct Outward<'t> {
     /// -1 for each normal that the winding has the other way, else 1.
     signs: [f64; 2],
     is_solid: [bool; 2],
+    /// Squares of the least cosines between the normals and extremal directions.
     cones: [f64; 2],
 }
 
-/// Directions, and their opposites, near an axis.
-#[derive(Copy, Clone, Debug)]
-struct DoubleCone {
-    /// Unit vector.
-    axis: DVec3,
-    /// Square of the least cosine between the axis and a direction.
-    least_square: f64,
-}
-
-impl DoubleCone {
-    /// Allowance for rounding of directions, in squares of sines.
-    const ROUNDING: f64 = 1.0e-6;
-
-    /// Returns true unless an edge is perpendicular to no direction of the cone.
-    fn may_be_perpendicular(self, edge: DVec3) -> bool {
-        let height = edge.dot(self.axis);
-        height * height <= (1.0 - self.least_square + Self::ROUNDING) * edge.length_squared()
-    }
-}
+/// Allowance for rounding of directions, in squares of sines.
+const ROUNDING: f64 = 1.0e-6;
 
 /// The gap along an axis, and the axis.
 type OutwardAxis = (f64, DVec3);
@@ -101,7 +85,7 @@ impl<'t> Outward<'t> {
         may_count: impl Fn(DVec3) -> bool,
     ) -> Option<TriangleContact> {
         let mut widest = None;
-        self.for_each(&[], |direction, _| {
+        self.for_each(false, |direction, _| {
             let (gap, axis) = self.axis(direction);
             if may_count(axis) {
                 widest = Some(widest.map_or(gap, |known: f64| known.max(gap)));
@@ -122,6 +106,12 @@ impl<'t> Outward<'t> {
         normal1.dot(normal2).abs() < least
     }
 
+    /// Returns true unless an edge is perpendicular to no direction of a cone.
+    fn may_cross(&self, cone: usize, edge: DVec3) -> bool {
+        let height = edge.dot(self.normals[cone]);
+        height * height <= (1.0 - self.cones[cone] + ROUNDING) * edge.length_squared()
+    }
+
     /// Returns the extremal axis of least overlap, if that is at most `most`.
     fn extremal_axis(
         &self,
@@ -132,9 +122,7 @@ impl<'t> Outward<'t> {
             return None;
         }
         let mut axes = ArrayVec::<OutwardAxis, 22>::new();
-        let cones =
-            [0, 1].map(|i| DoubleCone { axis: self.normals[i], least_square: self.cones[i] });
-        self.for_each(&cones, |direction, heights| {
+        self.for_each(true, |direction, heights| {
             let square = direction.length_squared();
             // Before the division: most directions end here.
             if (0..2).all(|i| heights[i] * heights[i] >= self.cones[i] * square) {
@@ -153,7 +141,7 @@ impl<'t> Outward<'t> {
     /// Returns the outward axis of least overlap. Returns `None` if that is less than the overlap of a gap, `widest`.
     fn least_axis(&self, widest: f64) -> Option<OutwardAxis> {
         let mut least: Option<OutwardAxis> = None;
-        self.for_each(&[], |direction, _| {
+        self.for_each(false, |direction, _| {
             let axis = self.axis(direction);
             least = least.filter(|known| known.0 >= axis.0).or(Some(axis));
             if axis.0 > widest { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -170,12 +158,8 @@ impl<'t> Outward<'t> {
     }
 
     /// Calls `visit` with each direction that leads out of the solids, of any length, and its heights along both normals,
-    /// until `visit` breaks. May leave out directions beyond one of the cones.
-    fn for_each(
-        &self,
-        cones: &[DoubleCone],
-        mut visit: impl FnMut(DVec3, [f64; 2]) -> ControlFlow<()>,
-    ) {
+    /// until `visit` breaks. With `in_cones`, may leave out directions beyond one of the cones.
+    fn for_each(&self, in_cones: bool, mut visit: impl FnMut(DVec3, [f64; 2]) -> ControlFlow<()>) {
         let [normal1, normal2] = self.normals;
         let mut consider = |direction: DVec3| {
             let heights = [direction.dot(normal1), -direction.dot(normal2)];
@@ -196,19 +180,15 @@ impl<'t> Outward<'t> {
                 return;
             }
         }
-        self.for_each_product(cones, consider);
+        self.for_each_product(in_cones, consider);
     }
 
     /// Calls `consider` with the products of edges whose signs lead out of both triangles, until `consider` breaks.
     #[inline(always)]
-    fn for_each_product(
-        &self,
-        cones: &[DoubleCone],
-        mut consider: impl FnMut(DVec3) -> ControlFlow<()>,
-    ) {
+    fn for_each_product(&self, in_cones: bool, mut consider: impl FnMut(DVec3) -> ControlFlow<()>) {
         let [t1, t2] = &self.triangles;
         let [normal1, normal2] = self.normals;
-        let may_count = |edge: DVec3| cones.iter().all(|cone| cone.may_be_perpendicular(edge));
+        let may_count = |edge: DVec3| !in_cones || (0..2).all(|i| self.may_cross(i, edge));
         let [may_count1, may_count2] = [t1, t2].map(|t| t.edges.map(may_count));
         // Edges run around the normals, against the winding if these do.
         let [sign1, sign2] = self.signs;
