@@ -113,12 +113,6 @@ pub(super) struct Bins {
     bin_count: usize,
 }
 
-/// A split before a bin, with the boxes of both sides.
-pub(super) struct Split {
-    pub(super) bin: usize,
-    pub(super) bounds: [Bounds; 2],
-}
-
 impl Bins {
     pub(super) fn new(mapping: &BinMapping) -> Self {
         Self { bins: [Bin::EMPTY; MOST_BINS], bin_count: mapping.bin_count }
@@ -131,8 +125,8 @@ impl Bins {
         bin.count += 1;
     }
 
-    /// The cheapest split that has triangles on both sides.
-    pub(super) fn best_split(&self) -> Option<Split> {
+    /// Returns the bin before which the cheapest split with triangles on both sides is, and the boxes of both.
+    pub(super) fn best_split(&self) -> Option<(usize, [Bounds; 2])> {
         let bins = &self.bins[..self.bin_count];
         let mut above = [Bin::EMPTY; MOST_BINS + 1];
         for (i, bin) in bins.iter().enumerate().rev() {
@@ -147,7 +141,7 @@ impl Bins {
             // False if a side is empty, as the cost is NaN.
             if cost < best_cost {
                 best_cost = cost;
-                best = Some(Split { bin: i, bounds: [below.bounds, above[i].bounds] });
+                best = Some((i, [below.bounds, above[i].bounds]));
             }
         }
         best

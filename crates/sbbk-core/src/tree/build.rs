@@ -47,12 +47,6 @@ struct Primitive {
     triangle: u32,
 }
 
-/// A node without content.
-struct Task {
-    node: u32,
-    range: std::ops::Range<usize>,
-}
-
 pub(super) fn build(vertices: &[Vec3], triangles: &[[u32; 3]]) -> BuildTree {
     let mut primitives = primitives(vertices, triangles);
     let mut nodes = Vec::with_capacity(triangles.len());
@@ -61,22 +55,23 @@ pub(super) fn build(vertices: &[Vec3], triangles: &[[u32; 3]]) -> BuildTree {
         depth: 0,
         content: Content::Leaf(0..triangles.len() as u32),
     });
-    let mut tasks = vec![Task { node: 0, range: 0..primitives.len() }];
-    while let Some(Task { node, range }) = tasks.pop() {
+    // Nodes without content.
+    let mut tasks = vec![(0, 0..primitives.len())];
+    while let Some((node, range)) = tasks.pop() {
         if range.len() <= BATCH {
-            nodes[node as usize].content = Content::Leaf(range.start as u32..range.end as u32);
+            nodes[node].content = Content::Leaf(range.start as u32..range.end as u32);
             continue;
         }
-        let depth = nodes[node as usize].depth + 1;
+        let depth = nodes[node].depth + 1;
         let (middle, bounds) = split(&mut primitives[range.clone()], depth);
         let middle = range.start + middle;
         let first = nodes.len() as u32;
         let children = [range.start..middle, middle..range.end];
         for (child, bounds) in children.into_iter().zip(bounds) {
-            tasks.push(Task { node: nodes.len() as u32, range: child });
+            tasks.push((nodes.len(), child));
             nodes.push(BuildNode { aabb: bounds.aabb(), depth, content: Content::Leaf(0..0) });
         }
-        nodes[node as usize].content = Content::Inner([first, first + 1]);
+        nodes[node].content = Content::Inner([first, first + 1]);
     }
     BuildTree { nodes, order: primitives.iter().map(|p| p.triangle).collect() }
 }
@@ -110,9 +105,9 @@ fn split(primitives: &mut [Primitive], depth: u32) -> (usize, [Bounds; 2]) {
         for primitive in &*primitives {
             bins.add(mapping.bin(primitive.bounds.centre()), &primitive.bounds);
         }
-        if let Some(split) = bins.best_split() {
-            let middle = partition(primitives, |p| mapping.bin(p.bounds.centre()) < split.bin);
-            return (middle, split.bounds);
+        if let Some((bin, bounds)) = bins.best_split() {
+            let middle = partition(primitives, |p| mapping.bin(p.bounds.centre()) < bin);
+            return (middle, bounds);
         }
     }
     halves(primitives)

@@ -49,12 +49,11 @@ fn pairs(
     kdops: &[Kdop],
     layers: LayerPlan,
 ) -> (Vec<Pair<3>>, Vec<Pair<SLABS>>) {
-    let numbers = number_nodes(nodes, layers);
-    // Entry 0 holds the root itself, in lane 0.
-    let mut aabb_pairs = vec![Pair::EMPTY; 1 + numbers.aabb_count];
-    let mut kdop_pairs = vec![Pair::EMPTY; numbers.kdop_count];
+    let (numbers, [aabb_count, kdop_count]) = number_nodes(nodes, layers);
+    let mut aabb_pairs = vec![Pair::EMPTY; aabb_count];
+    let mut kdop_pairs = vec![Pair::EMPTY; kdop_count];
     let link_of = |place: usize| match nodes[place].content {
-        Content::Inner(_) => Link::inner(numbers.of_place[place]),
+        Content::Inner(_) => Link::inner(numbers[place]),
         Content::Leaf(_) => leaf_links[place],
     };
     let root = &nodes[0].aabb;
@@ -63,7 +62,7 @@ fn pairs(
         let Content::Inner(children) = node.content else {
             continue;
         };
-        let number = numbers.of_place[place] as usize;
+        let number = numbers[place] as usize;
         for (lane, child) in children.into_iter().enumerate() {
             let child = child as usize;
             if layers.is_kdop(node.depth + 1) {
@@ -122,15 +121,8 @@ fn kdops(
     kdops
 }
 
-/// Runtime numbers of the inner nodes.
-struct NodeNumbers {
-    /// Number by place in the built tree; `u32::MAX` for leaves.
-    of_place: Vec<u32>,
-    aabb_count: usize,
-    kdop_count: usize,
-}
-
-fn number_nodes(nodes: &[BuildNode], layers: LayerPlan) -> NodeNumbers {
+/// Returns the runtime number of each inner node by its place in the built tree, and the numbers of pairs of boxes and of k-DOPs.
+fn number_nodes(nodes: &[BuildNode], layers: LayerPlan) -> (Vec<u32>, [usize; 2]) {
     let children_are_kdops = |node: &BuildNode| layers.is_kdop(node.depth + 1);
     let is_inner = |node: &BuildNode| matches!(node.content, Content::Inner(_));
 
@@ -143,14 +135,16 @@ fn number_nodes(nodes: &[BuildNode], layers: LayerPlan) -> NodeNumbers {
     for (number, &place) in upper.iter().enumerate() {
         of_place[place as usize] = 1 + number as u32;
     }
-    let mut next = 1 + upper.len() as u32;
+    // Number 0 holds the root itself, in lane 0.
+    let aabb_count = 1 + upper.len();
+    let mut next = aabb_count as u32;
     for (place, node) in nodes.iter().enumerate() {
         if is_inner(node) && children_are_kdops(node) {
             of_place[place] = next;
             next += 1;
         }
     }
-    NodeNumbers { of_place, aabb_count: upper.len(), kdop_count: next as usize - 1 - upper.len() }
+    (of_place, [aabb_count, next as usize - aabb_count])
 }
 
 /// The sphere of the vertices that triangles use.
