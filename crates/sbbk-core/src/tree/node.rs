@@ -208,7 +208,7 @@ impl LeafBatch {
     }
 
     /// The k-DOP around all triangles.
-    pub(super) fn kdop(&self) -> Kdop {
+    pub fn kdop(&self) -> Kdop {
         let (mut low, mut high) =
             ([f32x4::splat(f32::INFINITY); SLABS], [f32x4::splat(f32::NEG_INFINITY); SLABS]);
         for corner in self.lanes() {

@@ -19,16 +19,6 @@ impl Kdop {
     /// The empty k-DOP, the neutral element of [`merge`](Self::merge).
     pub const EMPTY: Self = Self { min: [f32::INFINITY; SLABS], max: [f32::NEG_INFINITY; SLABS] };
 
-    /// The k-DOP around `points`. Projections that are NaN are left out.
-    pub fn fit(points: &[Vec3]) -> Self {
-        let mut kdop = Self::EMPTY;
-        for &point in points {
-            let projections = project(point.to_array());
-            kdop = kdop.merge(&Self { min: projections, max: projections });
-        }
-        Self::from_ends(kdop.min, kdop.max)
-    }
-
     /// The k-DOP around two.
     #[must_use]
     pub fn merge(&self, other: &Self) -> Self {
@@ -42,7 +32,7 @@ impl Kdop {
         merged
     }
 
-    /// Returns true if `point` is in the k-DOP, computed in f64. Fitted points are.
+    /// Returns true if `point` is in the k-DOP, computed in f64. Points around which it is fitted are.
     pub fn contains(&self, point: Vec3) -> bool {
         let projections = project(point.as_dvec3().to_array());
         let ends = self.min.iter().zip(&self.max);

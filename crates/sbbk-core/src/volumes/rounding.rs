@@ -15,7 +15,7 @@
 //!
 //! | place | rounded | bound | allowance |
 //! |---|---|---|---|
-//! | `Kdop::fit` | two additions of corners | `γ_2·(X + Y + Z)` of the largest coordinates | `γ_3` of that |
+//! | `LeafBatch::kdop` | two additions of corners | `γ_2·(X + Y + Z)` of the largest coordinates | `γ_3` of that |
 //! | `Sphere::fit` | a difference, three squares, a root | `γ_5` of the distance | `γ_6` and `UNDERFLOW` |
 //! | `centre_extent` | the half-length | `u` of it | the next number of eight bits, up to `2⁻⁷` more |
 //! | `PairFrame`, boxes | `t + R·c2` (5 roundings), minus `c1` (1), `e1 + \|R\|·e2` (8, `e <= M`) | `γ_5·(T + 2·s·M2) + γ_1·W + γ_8·(M1 + 2·s·M2)` | `r`; in frame 2 in the same way |

@@ -32,7 +32,7 @@ fn kdops_of_clouds_are_drawn_whole() {
     for case in 0..40 {
         let centre = random.vector(if case % 2 == 0 { 1.0 } else { 300.0 });
         let points: Vec<Vec3> = (0..30).map(|_| centre + random.vector(1.0)).collect();
-        let kdop = Kdop::fit(&points);
+        let kdop = kdop(&points);
         let lines = kdop_lines(&kdop);
         let magnitude = f64::from(centre.abs().max_element() + 1.0);
         for point in lines.iter().flatten() {

@@ -7,7 +7,8 @@ use glamx::{DVec3, Pose3, Quat, Vec3};
 use sbbk_core::field::{FieldFrame, FieldLeaves, FieldTriangle, HeightGrid};
 use sbbk_core::surface::{Facets, RayTriangles, Surface};
 use sbbk_core::traverse::{DescentCounts, TestedBox};
-use sbbk_core::tree::{LayerPlan, Tree};
+use sbbk_core::tree::{LayerPlan, LeafBatch, Tree};
+use sbbk_core::volumes::Kdop;
 
 /// A mesh as the tree takes it.
 #[derive(Clone, Debug)]
@@ -80,6 +81,13 @@ impl Facets for PlainFacets<'_> {
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         self.mesh.corners(half_edge / 3)[(half_edge as usize + i) % 3]
     }
+}
+
+/// The k-DOP around some points, as leaves and nodes have them.
+pub fn kdop(points: &[Vec3]) -> Kdop {
+    let corners = |three: &[Vec3]| [0, 1, 2].map(|i| three[i.min(three.len() - 1)]);
+    let fit = |three: &[Vec3]| LeafBatch::gather(&[0], |_| corners(three)).kdop();
+    points.chunks(3).map(fit).fold(Kdop::EMPTY, |all, kdop| all.merge(&kdop))
 }
 
 /// SplitMix64: enough for test inputs, the same on every machine.
