@@ -30,12 +30,12 @@ impl ConvexBody {
 
     /// A cylinder around the y axis.
     pub fn cylinder(half_height: f64, radius: f64) -> Self {
-        Core::Curved(Curved::Cylinder { half_height, radius }).sharp()
+        Core::Curved(Curved { half_height, radius, is_cone: false }).sharp()
     }
 
     /// A cone around the y axis, its tip at `half_height`.
     pub fn cone(half_height: f64, radius: f64) -> Self {
-        Core::Curved(Curved::Cone { half_height, radius }).sharp()
+        Core::Curved(Curved { half_height, radius, is_cone: true }).sharp()
     }
 
     /// All below the plane through the origin with this unit normal.

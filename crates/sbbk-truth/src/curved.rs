@@ -22,18 +22,15 @@ const SAMPLES: usize = 240;
 
 /// A body around the y axis; the tip of a cone is at `half_height`.
 #[derive(Clone, Debug)]
-pub(super) enum Curved {
-    Cylinder { half_height: f64, radius: f64 },
-    Cone { half_height: f64, radius: f64 },
+pub(super) struct Curved {
+    pub half_height: f64,
+    pub radius: f64,
+    pub is_cone: bool,
 }
 
 impl Curved {
     pub fn size(&self) -> f64 {
-        match *self {
-            Self::Cylinder { half_height, radius } | Self::Cone { half_height, radius } => {
-                half_height + radius
-            }
-        }
+        self.half_height + self.radius
     }
 
     pub fn outside(&self, point: DVec3) -> f64 {
@@ -45,47 +42,32 @@ impl Curved {
         let across = point.x.hypot(point.z);
         let [x, z] = if across > 0.0 { [point.x / across, point.z / across] } else { [1.0, 0.0] };
         let at = |out: f64, y: f64| DVec3::new(x * out, y, z * out);
-        match *self {
-            Self::Cylinder { half_height, radius } => {
-                at(across.min(radius), point.y.clamp(-half_height, half_height))
-            }
-            // In a half plane, the cone is a right triangle: base, axis and slope.
-            Self::Cone { half_height, radius } if point.y < -half_height => {
-                at(across.min(radius), -half_height)
-            }
-            Self::Cone { half_height: h, radius: r } => {
-                let (slope, from_tip) = ([r, -2.0 * h], [across, point.y - h]);
-                if across * 2.0 * h + (point.y - h) * r <= 0.0 {
-                    return point;
-                }
-                let squared = r * r + 4.0 * h * h;
-                let along = (from_tip[0] * slope[0] + from_tip[1] * slope[1]) / squared;
-                let along = if along.is_nan() { 0.0 } else { along.clamp(0.0, 1.0) };
-                at(along * slope[0], h + along * slope[1])
-            }
+        let Self { half_height: h, radius: r, is_cone } = *self;
+        if !is_cone || point.y < -h {
+            return at(across.min(r), point.y.clamp(-h, h));
         }
+        // In a half plane, the cone is a right triangle: base, axis and slope.
+        let (slope, from_tip) = ([r, -2.0 * h], [across, point.y - h]);
+        if across * 2.0 * h + (point.y - h) * r <= 0.0 {
+            return point;
+        }
+        let squared = r * r + 4.0 * h * h;
+        let along = (from_tip[0] * slope[0] + from_tip[1] * slope[1]) / squared;
+        let along = if along.is_nan() { 0.0 } else { along.clamp(0.0, 1.0) };
+        at(along * slope[0], h + along * slope[1])
     }
 
     /// Height of the support point along a unit vector.
     fn reach(&self, u: DVec3) -> f64 {
-        let level = u.x.hypot(u.z);
-        match *self {
-            Self::Cylinder { half_height, radius } => half_height * u.y.abs() + radius * level,
-            Self::Cone { half_height, radius } => {
-                (half_height * u.y).max(radius * level - half_height * u.y)
-            }
-        }
+        let (along, level) = (self.half_height * u.y, self.radius * u.x.hypot(u.z));
+        if self.is_cone { along.max(level - along) } else { along.abs() + level }
     }
 
     /// The directions across the surface beside a point inside.
     fn surface_normals(&self, point: DVec3) -> [DVec3; 3] {
         let level = DVec3::new(point.x, 0.0, point.z).try_normalize().unwrap_or(DVec3::X);
-        let beside = match *self {
-            Self::Cylinder { .. } => level,
-            Self::Cone { half_height, radius } => {
-                (level * 2.0 * half_height + DVec3::Y * radius).try_normalize().unwrap_or(level)
-            }
-        };
+        let slope = level * 2.0 * self.half_height + DVec3::Y * self.radius;
+        let beside = if self.is_cone { slope.try_normalize().unwrap_or(level) } else { level };
         [beside, DVec3::Y, -DVec3::Y]
     }
 
