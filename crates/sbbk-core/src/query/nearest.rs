@@ -60,7 +60,7 @@ pub(super) fn search(
     goal: Goal,
     excluded: &[[u32; 2]],
     scratch: &mut SearchScratch,
-) -> (Option<FoundPair>, [u32; 2]) {
+) -> (Option<FoundPair>, [u64; 2]) {
     // The triangles of any two vertices may be excluded.
     let some = if excluded.is_empty() { some_distance(trees, &placement) } else { f64::INFINITY };
     // Unlike `min`, this keeps a limit that is NaN, which admits nothing.
@@ -73,7 +73,7 @@ pub(super) fn search(
     let mut frame = PairFrame::new(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
     // Bounds are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
-    let gaps = &mut SignedGaps { frame: &mut frame, limit: best as f32, toward: None, count: 0 };
+    let gaps = &mut SignedGaps { frame: &mut frame, limit: best as f32, toward: None };
     let mut search = NearestSearch { placement, test, goal, excluded, best, found: None, count: 0 };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
     if best > 0.0 {
@@ -82,7 +82,7 @@ pub(super) fn search(
     }
     let limit = |gaps: &SignedGaps<'_>| gaps.limit;
     seek(trees, gaps, limit, scratch, |gaps, leaf1, leaf2| search.leaves(gaps, leaf1, leaf2));
-    (search.found, [gaps.count, search.count])
+    (search.found, [gaps.frame.counts.aabb_tests, search.count])
 }
 
 /// The distance of two vertices: the least is not above it.
@@ -102,7 +102,7 @@ struct NearestSearch<'a> {
     best: f64,
     found: Option<FoundPair>,
     /// Number of pairs of triangles whose contact was computed.
-    count: u32,
+    count: u64,
 }
 
 impl NearestSearch<'_> {

@@ -30,8 +30,6 @@ pub(crate) struct SignedGaps<'a> {
     pub(crate) limit: f32,
     /// A direction to try first.
     pub(crate) toward: Option<Toward>,
-    /// Number of pairs compared.
-    pub(crate) count: u32,
 }
 
 /// Returns the lanes whose bounds are within a limit, and the bounds. A bound that overflowed to NaN
@@ -109,7 +107,7 @@ impl Compare for SignedGaps<'_> {
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
         let along = self.toward.as_ref().map(|toward| toward.gaps(nodes));
         let along = along.unwrap_or(f32x4::splat(f32::NEG_INFINITY));
-        self.count += nodes.lanes.count_ones();
+        self.frame.counts.aabb_tests += u64::from(nodes.lanes.count_ones());
         let near = within(self.limit, along, nodes.lanes);
         if near.0 == 0 {
             return near;
