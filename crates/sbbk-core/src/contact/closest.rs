@@ -110,7 +110,7 @@ fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Closest
     let between = t2.vertices[j] - t1.vertices[i];
     let cross = e1.cross(e2);
     let area = cross.length_squared();
-    let [along1, along2] = closest_on_lines(between, e1, e2, cross, area);
+    let [along1, along2] = closest_on_lines(between, e1, e2);
     if !(within(along1) && within(along2)) {
         return None;
     }
@@ -131,14 +131,9 @@ fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Closest
 /// lines. The second point is the foot of the first on its line, so that near parallel lines move
 /// both by the same error.
 #[inline(always)]
-pub(super) fn closest_on_lines(
-    between: DVec3,
-    e1: DVec3,
-    e2: DVec3,
-    cross: DVec3,
-    area: f64,
-) -> [f64; 2] {
-    let along1 = between.cross(e2).dot(cross) / area;
+pub(super) fn closest_on_lines(between: DVec3, e1: DVec3, e2: DVec3) -> [f64; 2] {
+    let cross = e1.cross(e2);
+    let along1 = between.cross(e2).dot(cross) / cross.length_squared();
     [along1, (along1 * e1.dot(e2) - between.dot(e2)) / e2.length_squared()]
 }
 

@@ -173,8 +173,7 @@ fn features_at(t1: &Triangle, t2: &Triangle, axis: &Axis) -> (TriangleContact, b
 fn edges_at(t1: &Triangle, i: usize, t2: &Triangle, j: usize, axis: &Axis) -> (DVec3, DVec3, bool) {
     let (e1, e2) = (t1.edges[i], t2.edges[j]);
     let between = t2.vertices[j] - t1.vertices[i];
-    let cross = e1.cross(e2);
-    let along = closest_on_lines(between, e1, e2, cross, cross.length_squared());
+    let along = closest_on_lines(between, e1, e2);
     let [s1, s2] = [within_edge(along[0]), within_edge(along[1])];
     // The axis is not the direction of the contact if its gap belongs to an opposite vertex.
     let slack = (between.dot(axis.normal) - axis.gap).abs();

@@ -238,9 +238,7 @@ impl TriangleAndSolid<'_, CuboidSupport> {
         let (start, edge) = (self.triangle[j], self.edges[j]);
         let mut corner = self.solid.0.copysign(outward);
         corner[axis] = 0.0;
-        let along = DVec3::AXES[axis];
-        let cross = edge.cross(along);
-        let [s, t] = closest_on_lines(corner - start, edge, along, cross, cross.length_squared());
+        let [s, t] = closest_on_lines(corner - start, edge, DVec3::AXES[axis]);
         let is_within = (0.0..=1.0).contains(&s) && t.abs() <= self.solid.0[axis];
         let point = start + edge * s;
         let above = (point - corner).dot(outward) - width;

@@ -204,9 +204,7 @@ impl HullFaces {
             }
             HullFacet::Edges([start, along], j) => {
                 let (corner, side) = (triangle[j], triangle[(j + 1) % 3] - triangle[j]);
-                let cross = side.cross(along);
-                let [s, t] =
-                    closest_on_lines(start - corner, side, along, cross, cross.length_squared());
+                let [s, t] = closest_on_lines(start - corner, side, along);
                 let is_within = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
                 is_within.then(|| corner + side * s)
             }

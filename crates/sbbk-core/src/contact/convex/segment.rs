@@ -152,7 +152,7 @@ fn from_edge(v: DVec3, w: DVec3, p: DVec3, along: DVec3) -> PointPair {
     let (edge, between) = (w - v, p - v);
     let cross = edge.cross(along);
     let area = cross.length_squared();
-    let [s, t] = closest_on_lines(between, edge, along, cross, area);
+    let [s, t] = closest_on_lines(between, edge, along);
     let is_within = |x: f64| x > 0.0 && x < 1.0;
     let lengths = edge.length_squared() * along.length_squared();
     if is_within(s) && is_within(t) && area > NEAR_PARALLEL * NEAR_PARALLEL * lengths {
@@ -198,7 +198,7 @@ fn penetration(triangle: &[DVec3; 3], &[p, q]: &[DVec3; 2]) -> Option<ConvexCont
         if volume * volume < area * (least.distance * least.distance) {
             let scale = 1.0 / area.sqrt();
             let outward = cross * if volume > 0.0 { -scale } else { scale };
-            let [s, _] = closest_on_lines(p - v, edge, along, cross, area);
+            let [s, _] = closest_on_lines(p - v, edge, along);
             let on_triangle = v + edge * within_edge(s);
             least = ConvexContact::new(on_triangle, outward, -volume.abs() * scale);
         }
