@@ -95,7 +95,6 @@ impl Front {
         frame: &mut PairFrame,
         visit: impl FnMut(&LeafBatch, &LeafBatch),
     ) {
-        frame.counts.sphere_tests += 1;
         if !frame.placement.is_finite() || !frame.spheres_meet(trees.0, trees.1) {
             self.clear();
             return;

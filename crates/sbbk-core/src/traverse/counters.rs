@@ -3,12 +3,8 @@ use std::ops::AddAssign;
 /// The work of one or more descents.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct DescentCounts {
-    /// Pairs of root spheres compared.
-    pub sphere_tests: u64,
     /// Pairs of nodes compared by their boxes.
     pub aabb_tests: u64,
-    /// Pairs of nodes whose boxes met, compared by their k-DOPs.
-    pub kdop_tests: u64,
     /// Pairs of leaves handed to the visitor.
     pub leaf_pairs: u64,
     /// Reads of cells of height fields.
@@ -17,10 +13,8 @@ pub struct DescentCounts {
 
 impl AddAssign for DescentCounts {
     fn add_assign(&mut self, other: Self) {
-        let Self { sphere_tests, aabb_tests, kdop_tests, leaf_pairs, cells } = other;
-        self.sphere_tests += sphere_tests;
+        let Self { aabb_tests, leaf_pairs, cells } = other;
         self.aabb_tests += aabb_tests;
-        self.kdop_tests += kdop_tests;
         self.leaf_pairs += leaf_pairs;
         self.cells += cells;
     }

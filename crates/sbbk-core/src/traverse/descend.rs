@@ -89,11 +89,8 @@ pub fn descend_from(
 
 /// Returns the roots if these come within the margin.
 fn roots((tree1, tree2): (&Tree, &Tree), frame: &mut PairFrame) -> Option<NodePair> {
-    if tree1.sphere().is_some() && tree2.sphere().is_some() {
-        frame.counts.sphere_tests += 1;
-        if !frame.spheres_meet(tree1, tree2) {
-            return None;
-        }
+    if !frame.spheres_meet(tree1, tree2) {
+        return None;
     }
     frame.counts.aabb_tests += 1;
     let [root1, root2] = [tree1, tree2].map(|tree| (tree.children(0), Same(0)));

@@ -35,7 +35,6 @@ impl Compare for Overlap<'_> {
         let meeting = frame.boxes_meet(nodes) & nodes.lanes;
         match &nodes.kdops {
             Some(kdops) if meeting != 0 => {
-                frame.counts.kdop_tests += u64::from(meeting.count_ones());
                 (frame.correspondence().kdops_meet(kdops, meeting), [(); 4])
             }
             _ => (meeting, [(); 4]),
