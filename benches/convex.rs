@@ -7,7 +7,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glamx::DVec3;
 use sbbk_core::contact::convex::{
     ConeSupport, CuboidSupport, CylinderSupport, HullPoints, SegmentSupport, SupportMap,
-    round_contact,
+    convex_contact,
 };
 use std::hint::black_box;
 use std::time::Duration;
@@ -36,9 +36,9 @@ fn kind<S: SupportMap>(c: &mut Criterion, name: &str, core: &S, radius: f64) {
     while sets.iter().any(|set| set.len() < 500) {
         let at = random.point();
         let triangle = [0; 3].map(|_| at + 0.2 * random.point());
-        let set = match round_contact(&triangle, core, radius, MARGIN) {
+        let set = match convex_contact(&triangle, core, MARGIN + radius) {
             None => 1,
-            Some(contact) if contact.distance + radius > 0.0 => 0,
+            Some(contact) if contact.distance > 0.0 => 0,
             Some(_) => 2,
         };
         if sets[set].len() < 500 {
@@ -49,7 +49,7 @@ fn kind<S: SupportMap>(c: &mut Criterion, name: &str, core: &S, radius: f64) {
     for (set, pose) in sets.iter().zip(["near", "far", "crossing"]) {
         group.throughput(Throughput::Elements(set.len() as u64));
         let contact =
-            |t| black_box(round_contact(t, core, radius, MARGIN)).map_or(0.0, |c| c.distance);
+            |t| black_box(convex_contact(t, core, MARGIN + radius)).map_or(0.0, |c| c.distance);
         group.bench_function(pose, |b| b.iter(|| set.iter().map(contact).sum::<f64>()));
     }
 }

@@ -2,16 +2,17 @@
 //!
 //! ```
 //! use glamx::DVec3;
-//! use sbbk_core::contact::convex::{CylinderSupport, SegmentSupport, convex_contact, round_contact};
+//! use sbbk_core::contact::convex::{CylinderSupport, SegmentSupport, convex_contact};
 //!
 //! let floor = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Z * 4.0].map(|v| v - DVec3::new(1.0, 1.1, 1.0));
 //! let drum = CylinderSupport { half_height: 1.0, radius: 0.5 };
 //! let contact = convex_contact(&floor, &drum, 0.2).expect("0.1 is within the margin");
 //! assert!((contact.distance - 0.1).abs() < 1.0e-15 && contact.normal == DVec3::Y);
 //!
-//! let capsule = SegmentSupport([DVec3::Y, -DVec3::Y]);
-//! let contact = round_contact(&floor, &capsule, 0.3, 0.2).expect("crosses by 0.2");
-//! assert!((contact.distance + 0.2).abs() < 1.0e-15);
+//! // A capsule is all within its radius of a segment.
+//! let (segment, radius) = (SegmentSupport([DVec3::Y, -DVec3::Y]), 0.3);
+//! let contact = convex_contact(&floor, &segment, 0.2 + radius).expect("crosses by 0.2");
+//! assert!((contact.distance - radius + 0.2).abs() < 1.0e-15);
 //! ```
 //!
 //! # How
@@ -120,21 +121,13 @@ pub fn convex_contact<S: SupportMap>(
     shape: &S,
     margin: f64,
 ) -> Option<ConvexContact> {
-    find(triangle, shape, margin).filter(|contact| contact.distance <= margin)
-}
-
-/// Like [`convex_contact`] for a rounded shape: all points within `radius` of a core. The core of a
-/// ball is a point, the core of a capsule a segment.
-pub fn round_contact<S: SupportMap>(
-    triangle: &[DVec3; 3],
-    core: &S,
-    radius: f64,
-    margin: f64,
-) -> Option<ConvexContact> {
-    let ConvexContact { distance, normal, on_triangle, .. } =
-        find(triangle, core, margin + radius)?;
-    let contact = ConvexContact::new(on_triangle, normal, distance - radius);
-    (contact.distance <= margin).then_some(contact)
+    let [a, b, c] = *triangle;
+    // The sum is finite if all coordinates are, unless they are huge.
+    if !(a.abs() + b.abs() + c.abs()).element_sum().is_finite() {
+        return None;
+    }
+    let contact = shape.contact(triangle, margin)?;
+    (contact.distance <= margin && contact.is_finite()).then_some(contact)
 }
 
 /// Returns the contact of a triangle with the half-space below the plane through the origin with
@@ -172,17 +165,6 @@ pub fn convex_touches<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, reach: f6
 /// Least distance or depth for closed forms, as a share of the size of the bodies. Below it rounding
 /// determines the features. Higher: more contacts take the search. Lower: closed forms lose digits.
 const DOUBTFUL: f64 = 1.0e-10;
-
-/// The contact; perhaps `None` if farther than the margin.
-#[inline(always)]
-fn find<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, margin: f64) -> Option<ConvexContact> {
-    let [a, b, c] = *triangle;
-    // The sum is finite if all coordinates are, unless they are huge.
-    if !(a.abs() + b.abs() + c.abs()).element_sum().is_finite() {
-        return None;
-    }
-    shape.contact(triangle, margin).filter(ConvexContact::is_finite)
-}
 
 /// The contact by support points alone; `None` if clearly farther than the margin.
 #[inline(never)]

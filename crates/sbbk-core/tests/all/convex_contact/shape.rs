@@ -4,7 +4,7 @@ use crate::support::Random;
 use glamx::{DQuat, DVec3, Vec3};
 use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullPoints, PointSupport,
-    SegmentSupport, SupportMap, TriangleSupport, convex_contact, round_contact,
+    SegmentSupport, SupportMap, TriangleSupport, convex_contact,
 };
 use sbbk_truth::ConvexBody;
 
@@ -56,20 +56,23 @@ impl Kind {
 
 impl Shape {
     pub fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        let r = self.radius;
-        match &self.core {
-            Core::Point(p) if r == 0.0 => convex_contact(triangle, &PointSupport(*p), margin),
-            Core::Point(p) => round_contact(triangle, &PointSupport(*p), r, margin),
-            Core::Segment(ends) => round_contact(triangle, &SegmentSupport(*ends), r, margin),
-            Core::Triangle(t) => round_contact(triangle, &TriangleSupport(*t), r, margin),
-            Core::Cuboid(half) => round_contact(triangle, &CuboidSupport(*half), r, margin),
+        // The core may be a rounding farther than the sum.
+        let reach = (margin + self.radius) * (1.0 + 1.0e-15);
+        let ConvexContact { distance, normal, on_triangle, .. } = match &self.core {
+            Core::Point(p) => convex_contact(triangle, &PointSupport(*p), reach),
+            Core::Segment(ends) => convex_contact(triangle, &SegmentSupport(*ends), reach),
+            Core::Triangle(t) => convex_contact(triangle, &TriangleSupport(*t), reach),
+            Core::Cuboid(half) => convex_contact(triangle, &CuboidSupport(*half), reach),
             Core::Hull(points) => match in_f32(points) {
-                Some(points) => round_contact(triangle, &HullPoints::new(points), r, margin),
-                None => round_contact(triangle, &|d| first_farthest(points, d), r, margin),
+                Some(points) => convex_contact(triangle, &HullPoints::new(points), reach),
+                None => convex_contact(triangle, &|d| first_farthest(points, d), reach),
             },
-            Core::Cylinder(cylinder) => round_contact(triangle, cylinder, r, margin),
-            Core::Cone(cone) => round_contact(triangle, cone, r, margin),
-        }
+            Core::Cylinder(cylinder) => convex_contact(triangle, cylinder, reach),
+            Core::Cone(cone) => convex_contact(triangle, cone, reach),
+        }?;
+        let distance = distance - self.radius;
+        let on_shape = on_triangle + normal * distance;
+        (distance <= margin).then_some(ConvexContact { distance, normal, on_triangle, on_shape })
     }
 
     /// Farthest point of the core along a direction.
