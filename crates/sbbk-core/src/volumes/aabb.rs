@@ -10,14 +10,6 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The empty box.
-    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
-
-    /// Returns true if `point` is in the box or on its boundary.
-    pub fn contains(&self, point: Vec3) -> bool {
-        point.cmpge(self.min).all() && point.cmple(self.max).all()
-    }
-
     /// Half of the surface area, the cost of a node in the surface area heuristic. Zero if empty.
     pub fn half_area(&self) -> f32 {
         let d = (self.max - self.min).max(Vec3::ZERO);

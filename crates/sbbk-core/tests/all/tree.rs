@@ -35,7 +35,10 @@ pub fn check(soup: &Soup, plan: Option<LayerPlan>) -> Tree {
             assert_eq!(leaf.corners(lane), corners, "the leaf holds another triangle");
             for corner in corners {
                 let is_around = |node: &Node| {
-                    node.aabb().contains(corner) && node.kdop().is_none_or(|k| k.contains(corner))
+                    let Aabb { min, max } = node.aabb();
+                    corner.cmpge(min).all()
+                        && corner.cmple(max).all()
+                        && node.kdop().is_none_or(|k| k.contains(corner))
                 };
                 assert!(path.iter().all(is_around), "{triangle} is outside");
                 assert!(tree.sphere().is_none_or(|ball| ball.contains(corner)));
