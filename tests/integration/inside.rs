@@ -125,7 +125,7 @@ fn a_body_that_starts_in_a_solid_comes_out_slowly() {
         let (dispatcher, slab) = (SbbkDispatcher::default(), solid(ground));
         let _solid = declare_solid(&dispatcher, slab.as_trimesh().expect("a mesh"));
         let slab = ColliderBuilder::new(slab).translation(-ground.y * Vec3::Y);
-        let world = on_ground(slab, dispatcher);
+        let world = world_of([slab], dispatcher);
         let at = RigidBodyBuilder::dynamic().translation(Vec3::new(0.2, half - depth, 0.1));
         let mut fastest: Real = 0.0;
         let look = |body: &RigidBody| fastest = fastest.max(body.linvel().length());

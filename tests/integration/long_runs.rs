@@ -23,7 +23,7 @@ impl Soak {
     /// A mesh floor without bodies.
     fn new() -> Self {
         let dispatcher = with(|config| config.idle_tree_bytes = IDLE_BYTES);
-        let world = on_ground(collider(&mesh::terrain(24.0, 24, 0.6)), dispatcher.clone());
+        let world = world_of([collider(&mesh::terrain(24.0, 24, 0.6))], dispatcher.clone());
         Self { world, dispatcher, random: Rand32::new(1), bodies: VecDeque::new() }
     }
 

@@ -240,7 +240,7 @@ fn heads_come_to_rest() {
         let at = Pose3::from_parts(Vec3::new(6.0 * i as Real - 30.0, 1.4, 0.0), turn);
         (RigidBodyBuilder::dynamic().pose(at), ColliderBuilder::new(head.clone()))
     });
-    let mut heads = SceneWorld::new(on_ground(floor, SbbkDispatcher::default()), heads);
+    let mut heads = SceneWorld::new(world_of([floor], SbbkDispatcher::default()), heads);
     heads.step(600);
     assert!(heads.awake() <= 2, "{} of 10 heads do not lie still", heads.awake());
 }

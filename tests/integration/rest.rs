@@ -91,7 +91,7 @@ fn a_light_box_carries_a_heavy_one() {
     {
         let ground = ColliderBuilder::new(mesh::cuboid(Vec3::new(5.0, 0.5, 5.0), 6).shape());
         let ground = ground.translation(-0.5 * Vec3::Y);
-        let mut world = on_ground(ground, SbbkDispatcher::default());
+        let mut world = world_of([ground], SbbkDispatcher::default());
         let body = |height: Real| {
             RigidBodyBuilder::dynamic().translation(height * Vec3::Y).can_sleep(false)
         };

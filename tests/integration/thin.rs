@@ -76,7 +76,7 @@ fn fast_plates_do_not_pass_a_floor() {
     let passes = |index: &usize| {
         let phase = *index as Real / 64.0;
         let ground = ColliderBuilder::new(floor.clone());
-        let world = on_ground(ground, SbbkDispatcher::default());
+        let world = world_of([ground], SbbkDispatcher::default());
         let turn = Quat::from_rotation_y(6.0 * phase) * Quat::from_rotation_x(0.6 * phase);
         let place = Vec3::new(0.1, 2.0 + phase * SPEED / 60.0, 0.05);
         let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));

@@ -148,7 +148,7 @@ fn disabled_kinds_are_left_to_stock() {
 fn character_controllers_ask_for_no_contacts() {
     let dispatcher = counting();
     let floor = mesh::floor(4.0, 4).shape();
-    let mut world = on_ground(ColliderBuilder::new(floor.clone()), dispatcher.clone());
+    let mut world = world_of([ColliderBuilder::new(floor.clone())], dispatcher.clone());
     world.step();
     let (capsule, controller) =
         (SharedShape::capsule_y(0.4, 0.3), KinematicCharacterController::default());

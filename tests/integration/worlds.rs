@@ -16,14 +16,6 @@ pub fn world_of(
     world
 }
 
-/// A world with a fixed ground. Stock answers if there is no dispatcher.
-pub fn on_ground(
-    ground: ColliderBuilder,
-    dispatcher: impl Into<Option<SbbkDispatcher>>,
-) -> PhysicsWorld {
-    world_of([ground], dispatcher)
-}
-
 /// Adds a body to a world, steps it, and looks at the body after each step. Returns it at the end.
 pub fn watched(
     steps: usize,
@@ -79,7 +71,7 @@ pub fn bodies_above(
         let collider = ColliderBuilder::new(shape.clone()).density(1.0);
         (body.angular_damping(angular_damping), collider)
     });
-    SceneWorld::new(on_ground(ColliderBuilder::new(ground), dispatcher), bodies)
+    SceneWorld::new(world_of([ColliderBuilder::new(ground)], dispatcher), bodies)
 }
 
 /// Three dumbbells above a mesh terrain.
@@ -130,7 +122,7 @@ pub fn table() -> SharedShape {
 
 /// A soft ball above fixed ground.
 pub fn soft_ball_above(ground: &SharedShape, dispatcher: Option<&SbbkDispatcher>) -> PhysicsWorld {
-    let mut world = on_ground(ColliderBuilder::new(ground.clone()), dispatcher.cloned());
+    let mut world = world_of([ColliderBuilder::new(ground.clone())], dispatcher.cloned());
     let ball = mesh::ball(0.6, 5);
     let vertices = ball.vertices.iter().map(|v| *v + Vec3::new(0.4, 1.5, 0.3)).collect();
     let soft = SoftBodyBuilder::trimesh(vertices, ball.triangles.clone()).expect("a mesh");
@@ -145,7 +137,7 @@ pub fn particles(world: &PhysicsWorld) -> Vec<Vector> {
 /// Bodies as meshes and convex bodies of every kind on a mesh ground, all lengths times `unit`.
 pub fn mixed(unit: Real, has_soft_ccd: bool) -> PhysicsWorld {
     let ground = mesh::terrain(8.0 * unit, 16, 0.3 * unit).shape();
-    let mut world = on_ground(ColliderBuilder::new(ground), None);
+    let mut world = world_of([ColliderBuilder::new(ground)], None);
     world.integration_parameters.contact_recycling = false;
     world.integration_parameters.length_unit = unit;
     world.gravity *= unit;

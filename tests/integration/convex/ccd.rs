@@ -34,7 +34,7 @@ impl Slider {
     /// Returns the place of the body at the end, and how far it came along the x axis.
     fn slide(&self, steps: usize, ground: TriMesh, start: Vec3, speed: Real) -> (Vec3, Real) {
         let ground = ColliderBuilder::new(SharedShape::new(ground)).friction(self.friction);
-        let world = on_ground(ground, SbbkDispatcher::default());
+        let world = world_of([ground], SbbkDispatcher::default());
         let body = RigidBodyBuilder::dynamic()
             .translation(start + self.height * Vec3::Y)
             .rotation(self.turn.to_scaled_axis())

@@ -25,7 +25,7 @@ fn fall(
     shape: &SharedShape,
     height: Real,
 ) -> [Real; 2] {
-    let world = on_ground(ColliderBuilder::new(mesh.clone()), dispatcher);
+    let world = world_of([ColliderBuilder::new(mesh.clone())], dispatcher);
     let body = RigidBodyBuilder::dynamic().translation(Vec3::new(0.37, height, 0.21));
     let mut fastest: Real = 0.0;
     let look = |body: &RigidBody| {

@@ -44,7 +44,7 @@ const FLAGS: [TriMeshFlags; 2] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTER
 
 /// A world with a fixed ground and the dispatcher of a user.
 fn world(ground: ColliderBuilder) -> PhysicsWorld {
-    on_ground(ground, SbbkDispatcher::default())
+    world_of([ground], SbbkDispatcher::default())
 }
 
 /// Returns the place of a body some steps after its start in a world with a fixed ground.

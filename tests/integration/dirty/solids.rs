@@ -54,7 +54,7 @@ fn closed_meshes_push_out_what_has_sunk_in() {
             let mesh = solid.shape.as_trimesh().expect("a mesh");
             let _declared =
                 column.starts_with("declared").then(|| declare_solid(&dispatcher, mesh));
-            let world = on_ground(solid.clone(), dispatcher);
+            let world = world_of([solid.clone()], dispatcher);
             let place = Vec3::new(0.23, height, 0.11);
             let turn = Quat::from_rotation_y(0.4).to_scaled_axis();
             let start = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
