@@ -90,7 +90,7 @@ fn contacts_are_those_of_each_part_by_itself() {
 /// Would catch contacts that flicker, sink in or do not hold a body at rest.
 #[test]
 fn compounds_rest_on_a_mesh_as_with_stock() {
-    let dispatcher = counting();
+    let dispatcher = every();
     let mut stock = dumbbells(None);
     let mut sbbk = dumbbells(Some(dispatcher.clone()));
     stock.step(300);

@@ -12,7 +12,7 @@ fn soft_ball() -> TriMesh {
 /// Would catch one mesh taken for the other.
 #[test]
 fn two_soft_meshes_keep_apart() {
-    let dispatcher = counting();
+    let dispatcher = every();
     let mut meshes = [(); 2].map(|()| soft_ball());
     let rest = meshes[0].vertices().to_vec();
     let mut pair: Pair = Pair::default();

@@ -85,8 +85,7 @@ fn bodies_in_no_solid_are_not_pushed_out() {
 #[test]
 fn push_out_does_not_depend_on_earlier_poses() {
     let slab = shape(&mesh::cuboid(HALF, 4));
-    let kept = counting();
-    let unaware = every();
+    let [kept, unaware] = [every(), every()];
     let _solids = [&kept, &unaware].map(|dispatcher| declare_solid(dispatcher, &slab));
     let [mut inside, mut none] = [0; 2];
     for size in [0.005, 0.05, 0.5] {

@@ -5,7 +5,7 @@ use crate::prelude::*;
 #[test]
 fn nothing_is_done_where_nothing_moved() {
     let head = shape(&mesh::monkey_head_with(6));
-    let dispatcher = counting();
+    let dispatcher = every();
     let mut pair: Pair = Pair::default();
     let query = Question::new(&head, &head, touching(&mut Rand32::new(8), [&head, &head], 0.02));
     for _ in 0..10 {
@@ -31,7 +31,7 @@ fn many_short_steps_are_a_long_way() {
     let start = touching(&mut Rand32::new(9), [&head, &head], 0.0);
     let towards = -start.translation.normalize();
     for (contact_set, least_sets) in [(ContactSet::Surfaces, 20), (ContactSet::Triangles, 100)] {
-        let (dispatcher, unaware) = (counting_of(contact_set), having(contact_set));
+        let [dispatcher, unaware] = [(); 2].map(|()| having(contact_set));
         let mut pair: Pair = Pair::default();
         let mut sets = Vec::new();
         for step in 0..600 {

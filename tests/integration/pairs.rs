@@ -7,7 +7,7 @@ fn candidates_are_reused_whichever_mesh_comes_first() {
     let ground = shape(&mesh::floor(200.0, 40));
     let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 4));
     let reused = [false, true].map(|flipped| {
-        let dispatcher = counting();
+        let dispatcher = every();
         let mut pair: Pair = Pair::default();
         for i in 0..200 {
             let turn = Quat::from_rotation_x(5e-4 * (0.3 * i as Real).sin());
@@ -27,7 +27,7 @@ fn meshes_without_triangles_touch_nothing() {
     let flags = TriMeshFlags::DELETE_DEGENERATE_TRIANGLES | TriMeshFlags::MERGE_DUPLICATE_VERTICES;
     let empty = TriMesh::with_flags(vec![Vector::ZERO; 3], vec![[0, 1, 2]], flags).unwrap();
     assert!(empty.indices().is_empty());
-    let dispatcher = counting();
+    let dispatcher = every();
     for [one, two] in [[&empty, &empty], [&empty, &head], [&head, &empty]] {
         let mut pair: Pair = Pair::default();
         for x in [0.0, 0.1] {

@@ -71,7 +71,7 @@ fn the_answer_does_not_depend_on_the_motion_before() {
     let pairs = mesh_pairs();
     let kinds = kinds().iter().map(|kind| (kind, 400)).chain(pairs.iter().map(|pair| (pair, 1200)));
     for (seed, (kind, steps)) in (0..).zip(kinds) {
-        let (name, dispatcher, patches) = (&kind.name, counting(), counting_patches());
+        let (name, dispatcher, patches) = (&kind.name, every(), counting_patches());
         let mut random = Rand32::new(seed);
         let mut question = kind.question(kind.pose(&mut random, 0.0)).flipped(seed % 2 == 1);
         let contacts = walk(&mut question, kind, &mut random, steps, [&dispatcher, &every()]);
@@ -233,7 +233,7 @@ fn steady_contact_allocates_nothing() {
     for (seed, kind) in (0..).zip(kinds()) {
         let mut random = Rand32::new(seed);
         let pose = kind.pose(&mut random, -0.03);
-        for (detail, dispatcher) in [("every", counting()), ("patches", counting_patches())] {
+        for (detail, dispatcher) in [("every", every()), ("patches", counting_patches())] {
             // The last case has less slack than its steps are long.
             for (flipped, stride, prediction) in
                 [(false, 1e-4, 0.02), (true, 1e-3, 0.02), (false, 2.5e-2, 0.002)]

@@ -108,9 +108,9 @@ impl<M, C> Pair<M, C> {
 /// Both sets of contacts, the default one first.
 pub const SETS: [ContactSet; 2] = [ContactSet::Surfaces, ContactSet::Triangles];
 
-/// Returns a dispatcher whose configuration differs from the default by a change.
+/// Returns a dispatcher that counts its queries. Otherwise its configuration differs from the default by a change.
 pub fn with(change: impl FnOnce(&mut SbbkConfig)) -> SbbkDispatcher {
-    let mut config = SbbkConfig::default();
+    let mut config = SbbkConfig::default().with_count_queries(true);
     change(&mut config);
     SbbkDispatcher::new(config)
 }
@@ -125,22 +125,9 @@ pub fn having(contact_set: ContactSet) -> SbbkDispatcher {
     with(|config| (config.contact_set, config.detail) = (contact_set, ContactDetail::Every))
 }
 
-/// A dispatcher like [`every`] that counts its queries.
-pub fn counting() -> SbbkDispatcher {
-    counting_of(ContactSet::default())
-}
-
-/// A dispatcher with every contact of this set, which counts its queries.
-pub fn counting_of(contact_set: ContactSet) -> SbbkDispatcher {
-    with(|config| {
-        (config.contact_set, config.detail) = (contact_set, ContactDetail::Every);
-        config.count_queries = true;
-    })
-}
-
 /// A dispatcher as a user gets it, which counts its queries.
 pub fn counting_patches() -> SbbkDispatcher {
-    with(|config| config.count_queries = true)
+    with(|_| ())
 }
 
 /// Declares that a mesh is a solid, as long as the result lives.

@@ -36,7 +36,7 @@ fn contacts_keep_their_data_where_a_ball_rolls() {
 #[test]
 fn another_prediction_distance_is_no_new_pair() {
     let (ground, shape) = (ground(), SharedShape::ball(0.8));
-    let dispatcher = counting_of(ContactSet::Surfaces);
+    let dispatcher = having(ContactSet::Surfaces);
     let mut pair = Pair::<(), u32>::default();
     for (i, prediction) in [0.02, 3.0, 0.02, 1.0, 0.05, 8.0].into_iter().enumerate() {
         let question = Question::new(&ground, &*shape, Pose::translation(0.3, 1.3, 0.1));
