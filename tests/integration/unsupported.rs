@@ -1,5 +1,5 @@
 use crate::prelude::*;
-use crate::who_answers::{Who, kinds};
+use crate::who_answers::kinds;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A ball with one vertex that is not a number.
@@ -69,7 +69,7 @@ fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
     let whole = shape(&mesh::ball(1.0, 4));
     let pos12 = above(0.6);
     let mut answered = 0;
-    for (name, other, who) in kinds() {
+    for (name, other, by_sbbk) in kinds() {
         for (number, endless) in endless_meshes().iter().enumerate() {
             for is_first in [true, false] {
                 let dispatcher = SbbkDispatcher::default();
@@ -98,14 +98,14 @@ fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
                     assert_eq!(ask(&dispatcher, endless, ours), expected, "{case}");
                     let [ours, stocks] = pairs.each_ref().map(|p| format!("{:?}", p.manifolds));
                     assert_eq!(ours, stocks, "{case}");
-                    let count = if who == Who::Sbbk { repeat } else { 0 };
+                    let count = if by_sbbk { repeat } else { 0 };
                     assert_eq!(dispatcher.stats().unsupported_queries, count, "{case}");
                 }
                 let mut pair: Pair = Pair::default();
                 for mesh in [&whole, endless, endless, &whole] {
                     let _ = ask(&dispatcher, mesh, &mut pair);
                 }
-                let count = if who == Who::Sbbk { 4 } else { 0 };
+                let count = if by_sbbk { 4 } else { 0 };
                 assert_eq!(dispatcher.stats().unsupported_queries, count, "{case}");
                 let mut first: Pair = Pair::default();
                 let _ = ask(&dispatcher, &whole, &mut first);

@@ -6,16 +6,8 @@ use rapier3d::control::KinematicCharacterController;
 use rapier3d::parry::shape::{Polyline, PolylineFlags};
 use rapier3d::pipeline::QueryFilter;
 
-/// Who answers for a pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Who {
-    Sbbk,
-    Parry,
-}
-
-/// Shapes that a mesh can meet, and who computes their contacts.
-pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
-    use Who::{Parry, Sbbk};
+/// Shapes that a mesh can meet. True if SBBK computes their contacts, false if Parry does.
+pub fn kinds() -> Vec<(&'static str, SharedShape, bool)> {
     let ball = mesh::ball(0.7, 3);
     let field = SharedShape::new(rolling(4.0, 4, 0.1));
     let part = |shape: SharedShape| vec![(Pose::translation(0.1, 0.0, 0.0), shape)];
@@ -24,16 +16,16 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     let with_field = [part(field.clone()), part(SharedShape::ball(0.5))].concat();
     let line = vec![-Vec3::X, Vec3::X, Vec3::Y];
     let soft_line = Polyline::with_flags(line.clone(), None, PolylineFlags::DEFORMABLE);
-    let convex = shapes(1.0).into_iter().map(|(name, shape)| (name, shape, Sbbk));
+    let convex = shapes(1.0).into_iter().map(|(name, shape)| (name, shape, true));
     let others = [
-        ("mesh", ball.shape(), Sbbk),
-        ("deformable mesh", SharedShape::new(soft), Sbbk),
-        ("height field", field, Sbbk),
-        ("compound", SharedShape::compound(part(SharedShape::ball(0.5))), Sbbk),
-        ("compound with another kind", SharedShape::compound(with_field), Parry),
-        ("polyline", SharedShape::polyline(line, None), Sbbk),
-        ("deformable polyline", SharedShape::new(soft_line), Parry),
-        ("voxels", SharedShape::voxels_from_points(Vec3::splat(0.3), &ball.vertices), Parry),
+        ("mesh", ball.shape(), true),
+        ("deformable mesh", SharedShape::new(soft), true),
+        ("height field", field, true),
+        ("compound", SharedShape::compound(part(SharedShape::ball(0.5))), true),
+        ("compound with another kind", SharedShape::compound(with_field), false),
+        ("polyline", SharedShape::polyline(line, None), true),
+        ("deformable polyline", SharedShape::new(soft_line), false),
+        ("voxels", SharedShape::voxels_from_points(Vec3::splat(0.3), &ball.vertices), false),
     ];
     convex.chain(others).collect()
 }
@@ -45,15 +37,15 @@ fn contacts_of_each_kind_are_computed_as_documented() {
     let pos12 = Pose::translation(0.15, 0.6, 0.1);
     for flags in [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE] {
         let mesh = mesh::ball(0.8, 4).trimesh(flags);
-        for (name, other, who) in kinds() {
+        for (name, other, by_sbbk) in kinds() {
             for flipped in [false, true] {
                 let question = Question::new(&mesh, &*other, pos12).flipped(flipped);
                 let dispatcher = every();
                 let found = question.fresh(&dispatcher);
                 let stats = dispatcher.stats();
-                assert_eq!(stats.queries, u64::from(who == Who::Sbbk), "{name}: {stats:?}");
+                assert_eq!(stats.queries, u64::from(by_sbbk), "{name}: {stats:?}");
                 assert_eq!(stats.unsupported_queries, 0, "{name}: {stats:?}");
-                if who == Who::Sbbk {
+                if by_sbbk {
                     assert_eq!(stats.descended_queries, 1, "{name} touches: {stats:?}");
                     continue;
                 }
@@ -135,8 +127,8 @@ fn disabled_kinds_are_left_to_stock() {
         (kinds.meshes, kinds.height_fields) = (false, false);
         (kinds.convex_shapes, kinds.composites) = (false, false);
     });
-    for (name, other, who) in kinds() {
-        assert_eq!(is_ours(&all, &ground, &*other), who == Who::Sbbk, "{name}");
+    for (name, other, by_sbbk) in kinds() {
+        assert_eq!(is_ours(&all, &ground, &*other), by_sbbk, "{name}");
         assert!(!is_ours(&none, &ground, &*other), "{name}");
     }
 }
