@@ -73,11 +73,11 @@ const FAMILIES: &[Family] = &[
     ("tip of a cone on a slab", |count| on_slab(&cone(count / 2), [0.1, 0.501, 0.2])),
     ("tip of a cone in a slab", |count| on_slab(&cone(count / 2), [0.1, 0.49, 0.2])),
     ("flat fan and a mesh cube", |count| {
-        case(&fan(count, 0.0), shape(&mesh::cuboid(Vec3::splat(0.3), 1)), 0.301 * Vec3::Y)
+        case(&fan(count), shape(&mesh::cuboid(Vec3::splat(0.3), 1)), 0.301 * Vec3::Y)
     }),
-    ("flat fan and a ball", |count| case(&fan(count, 0.0), Ball::new(0.3), 0.301 * Vec3::Y)),
+    ("flat fan and a ball", |count| case(&fan(count), Ball::new(0.3), 0.301 * Vec3::Y)),
     ("flat fan and a cuboid", |count| {
-        case(&fan(count, 0.0), Cuboid::new(Vec3::splat(0.3)), 0.299 * Vec3::Y)
+        case(&fan(count), Cuboid::new(Vec3::splat(0.3)), 0.299 * Vec3::Y)
     }),
     ("cone in a ball", |count| case(&cone(count / 2), Ball::new(0.3), -0.29 * Vec3::Y)),
     ("cone in a cuboid", |count| {
@@ -109,11 +109,11 @@ const FAMILIES: &[Family] = &[
         on_slab(&nest, [0.1, 0.501, 0.2])
     }),
     ("copies of a fan and a ball", |count| {
-        case(&layers(&fan(12, 0.0), count / 12), Ball::new(0.4), Vec3::new(0.11, 0.39, 0.07))
+        case(&layers(&fan(12), count / 12), Ball::new(0.4), Vec3::new(0.11, 0.39, 0.07))
     }),
     ("copies of a fan and a capsule", |count| {
         let capsule = Capsule::new_x(0.2, 0.3);
-        case(&layers(&fan(12, 0.0), count / 12), capsule, Vec3::new(0.11, 0.29, 0.07))
+        case(&layers(&fan(12), count / 12), capsule, Vec3::new(0.11, 0.29, 0.07))
     }),
     ("disc of two fans in a cuboid", |count| {
         let [top, bottom] = [0.1, -0.1].map(|height| Vec2::new(0.0, height));

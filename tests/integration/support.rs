@@ -215,23 +215,16 @@ pub fn assert_bits<M, C>(
     assert!(all(found) == all(expected), "{context}");
 }
 
-/// A circle of triangles around a hub at the origin, whose rim is at a height.
-pub fn fan(count: u32, height: f32) -> Mesh {
-    let rim = |i: u32| {
-        let (sin, cos) = (TAU * i as f32 / count as f32).sin_cos();
-        Vec3::new(cos, height, sin)
-    };
-    let vertices = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
-    let triangles = (0..count).map(|i| [0, 1 + (i + 1) % count, 1 + i]).collect();
-    Mesh::new("fan", vertices, triangles)
+/// A flat circle of triangles around a hub at the origin.
+pub fn fan(count: u32) -> Mesh {
+    turned_inside_out(mesh::revolved(&[Vec2::ZERO, Vec2::X], count))
 }
 
 /// A cone with its tip at the origin, pointing down.
 pub fn cone(count: u32) -> Mesh {
-    let Mesh { vertices, mut triangles, .. } = fan(count, 2.0);
-    triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-    triangles.extend((1..count - 1).map(|i| [1, 1 + i, 2 + i]).map(|[a, b, c]| [a, c, b]));
-    Mesh::new("cone", vertices, triangles)
+    let mut cone = mesh::revolved(&[Vec2::ZERO, Vec2::new(1.0, 2.0)], count);
+    cone.triangles.extend((1..count - 1).map(|i| [1, 2 + i, 1 + i]));
+    cone
 }
 
 /// Parry's mesh of a mesh of the laboratory.
