@@ -16,14 +16,6 @@ fn split_block(triangle: usize, edge: usize) -> Mesh {
     block
 }
 
-/// A block without a top.
-fn open_block() -> Mesh {
-    let mut block = mesh::cuboid(Vec3::splat(0.5), 1);
-    let is_top = |corner: &u32| block.vertices[*corner as usize].y > 0.0;
-    block.triangles.retain(|corners| !corners.iter().all(is_top));
-    block
-}
-
 /// Flat bodies, and a round one.
 fn bodies(half: Vec3, round: (&'static str, SharedShape)) -> [(&'static str, SharedShape); 4] {
     [
@@ -44,7 +36,9 @@ fn bodies_over_an_edge_of_a_block_touch_nothing() {
     let mut count = 0;
     let sides = (0..12).flat_map(|triangle| [0, 1, 2].map(|edge| (triangle, edge)));
     let split = sides.map(|(triangle, edge)| split_block(triangle, edge));
-    for (index, block) in split.chain([open_block()]).enumerate() {
+    let block = mesh::cuboid(Vec3::splat(0.5), 1);
+    let open = block.keeping(|corners| corners.iter().any(|corner| corner.y < 0.0));
+    for (index, block) in split.chain([open]).enumerate() {
         let block = block.shape();
         for (name, body) in &bodies {
             for step in 0..160 {
@@ -159,9 +153,7 @@ fn step_down(height: Real) -> [Mesh; 2] {
         [[2.0, -height], [0.0, -height], [0.0, 0.0], [-2.0, 0.0], [-2.0, -1.0], [2.0, -1.0]];
     let outline = outline.map(|point| Vec2::from(point) + middle);
     let solid = mesh::prism(&outline, 1.0).mapped(|v| v - middle.extend(0.0));
-    let mut sheet = solid.clone();
-    sheet.triangles.retain(|corners| {
-        let [a, b, c] = corners.map(|corner| solid.vertices[corner as usize]);
+    let sheet = solid.clone().keeping(|[a, b, c]| {
         let is_end = a.z == b.z && b.z == c.z;
         !is_end && [a, b, c].iter().all(|corner| corner.y > -0.75)
     });

@@ -4,18 +4,11 @@ use rapier3d::dynamics::MassProperties;
 /// Half the side of a vessel of single walls.
 const HALF: f32 = 0.4;
 
-/// Returns a mesh without the triangles of its top.
-fn open(mesh: Mesh) -> Mesh {
-    let is_top = |&triangle: &usize| mesh.corners(triangle).iter().all(|at| at.y > HALF - 1.0e-4);
-    let kept = (0..mesh.triangle_count()).filter(|triangle| !is_top(triangle));
-    let triangles = kept.map(|triangle| mesh.triangles[triangle]).collect();
-    Mesh::new("open", mesh.vertices.clone(), triangles)
-}
-
 fn vessels() -> [(&'static str, Mesh); 2] {
     let profile = [[0.0, -HALF], [HALF, -HALF], [HALF, HALF]];
     let cup = mesh::revolved(&profile.map(Vec2::from_array), 24);
-    [("box", open(mesh::cuboid(Vec3::splat(HALF), 3))), ("cup", cup)]
+    let cube = mesh::cuboid(Vec3::splat(HALF), 3);
+    [("box", cube.keeping(|corners| corners.iter().any(|at| at.y < HALF))), ("cup", cup)]
 }
 
 /// Lids of half a side, with the heights of their lower sides.

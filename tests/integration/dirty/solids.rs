@@ -69,8 +69,8 @@ fn closed_meshes_push_out_what_has_sunk_in() {
 
 /// Vessels of radius 1, open above.
 fn vessels() -> Vec<(&'static str, Mesh)> {
-    let mut open_box = uneven_box(Vec3::ONE, [4; 6]);
-    open_box.triangles.retain(|t| t.iter().any(|&k| open_box.vertices[k as usize].y < 0.99));
+    let open_box = uneven_box(Vec3::ONE, [4; 6]);
+    let open_box = open_box.keeping(|corners| corners.iter().any(|corner| corner.y < 0.99));
     let tube = mesh::tube(1.0, 2.0, 32);
     let wall = mesh::vessel(1.0, 12, 0.0);
     let inner = mesh::turned_inside_out(wall.clone().scaled(0.9));

@@ -77,6 +77,13 @@ impl Mesh {
         self
     }
 
+    /// Keeps the triangles whose corners pass a test.
+    pub fn keeping(mut self, is_kept: impl Fn([Vec3; 3]) -> bool) -> Self {
+        let vertices = &self.vertices;
+        self.triangles.retain(|triangle| is_kept(triangle.map(|index| vertices[index as usize])));
+        self
+    }
+
     pub fn posed(self, pose: &Pose3) -> Self {
         self.mapped(|v| pose.transform_point(v))
     }

@@ -140,11 +140,8 @@ pub fn skirted(sheet: &Mesh, bottom: f32) -> Mesh {
 /// A box with `2 * cells` cells a side, and a wall across its middle.
 pub fn walled_box(half_extents: Vec3, cells: u32) -> Mesh {
     let solid = super::cuboid(half_extents, 2 * cells);
-    let across = box_faces(half_extents, |_| [2 * cells; 2]);
-    // The first face, moved to the middle.
-    let count = 2 * (2 * cells as usize).pow(2);
-    let mut wall = across.mapped(|v| v.with_x(0.0));
-    wall.triangles.truncate(count);
+    let is_first_face = |corners: [Vec3; 3]| corners.iter().all(|v| v.x == half_extents.x);
+    let wall = solid.clone().keeping(is_first_face).mapped(|v| v.with_x(0.0));
     Mesh::merged("walled box", &[solid, wall]).welded()
 }
 
@@ -159,11 +156,6 @@ pub fn tube(radius: f32, half_width: f32, segments: u32) -> Mesh {
 
 /// A ball cut off at the height `top`, a share of its radius: a bowl, or a vase.
 pub fn vessel(radius: f32, cells: u32, top: f32) -> Mesh {
-    let mut vessel = cube_ball(radius, [cells; 6]);
-    let vertices = &vessel.vertices;
-    let is_below = |triangle: &[u32; 3]| {
-        triangle.iter().all(|&vertex| vertices[vertex as usize].y < top * radius)
-    };
-    vessel.triangles.retain(is_below);
-    vessel.welded().named("vessel")
+    let is_below = |corners: [Vec3; 3]| corners.iter().all(|corner| corner.y < top * radius);
+    cube_ball(radius, [cells; 6]).keeping(is_below).welded().named("vessel")
 }

@@ -87,10 +87,7 @@ fn ground(kit: &Kit, name: &str, cell: f32) -> ColliderBuilder {
     let cells = [columns, 1, rows];
     let mut floor = mesh::slab(HALF_EXTENTS, cells).mapped(|v| v - Vec3::Y * HALF_EXTENTS.y);
     if name == "sheet" {
-        let is_top = |triangle: &[u32; 3]| {
-            triangle.iter().all(|&vertex| floor.vertices[vertex as usize].y == 0.0)
-        };
-        floor.triangles.retain(is_top);
+        floor = floor.keeping(|corners| corners.iter().all(|corner| corner.y == 0.0));
     }
     kit.mesh(&floor.welded())
 }
