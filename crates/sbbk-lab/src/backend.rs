@@ -7,7 +7,6 @@ use std::sync::Arc;
 use rapier_integration::{ContactDetail, ContactSet, PreparedTree, SbbkConfig, SbbkDispatcher};
 use rapier3d::parry::query::{ContactManifoldsWorkspace, DefaultQueryDispatcher};
 use sbbk_core::tree::LayerPlan;
-use sbbk_testkit::probe::{Probe, Recording, SharedDispatcher};
 
 /// The dispatcher of a backend.
 pub struct Dispatcher {
@@ -26,6 +25,14 @@ impl Dispatcher {
         let Some(sbbk) = &self.sbbk else { return };
         let prepare = |shape| sbbk.prepare_shape(shape).ok()?;
         self.trees.extend(shapes.into_iter().filter_map(prepare));
+    }
+
+    /// Makes a world ask this dispatcher.
+    pub fn serve(&self, world: &mut PhysicsWorld) {
+        match &self.sbbk {
+            Some(sbbk) => world.narrow_phase.set_query_dispatcher(sbbk.clone()),
+            None => world.narrow_phase.set_query_dispatcher(DefaultQueryDispatcher),
+        }
     }
 }
 
@@ -83,14 +90,12 @@ impl Backend {
         Dispatcher { backend: self, shared, sbbk, trees: Vec::new() }
     }
 
-    /// Installs a fresh dispatcher in a world, with the trees of all its meshes. Returns it with a
-    /// probe of its answers.
-    pub fn install(self, world: &mut PhysicsWorld) -> (Dispatcher, Probe) {
-        let (mut dispatcher, probe) = (self.dispatcher(), Probe::default());
+    /// Installs a fresh dispatcher in a world, with the trees of all its meshes.
+    pub fn install(self, world: &mut PhysicsWorld) -> Dispatcher {
+        let mut dispatcher = self.dispatcher();
         dispatcher.prepare(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
-        let recording = Recording::new(dispatcher.shared.clone(), probe.clone());
-        world.narrow_phase.set_query_dispatcher(recording);
-        (dispatcher, probe)
+        dispatcher.serve(world);
+        dispatcher
     }
 }
 

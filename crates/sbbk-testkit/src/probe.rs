@@ -33,34 +33,11 @@ pub fn shape_address(shape: &dyn Shape) -> usize {
     std::ptr::from_ref(shape).cast::<()>().addr()
 }
 
-/// Answers of one [`Recording`] dispatcher, while they are recorded; clones share them.
-#[derive(Clone, Debug, Default)]
-pub struct Probe(Arc<Mutex<Option<Vec<Answer>>>>);
-
-impl Probe {
-    /// Keeps the answer of each query of two meshes from now on, until [`Self::take_answers`]. Off at
-    /// first: recording allocates, so steps that record are not steps to time.
-    pub fn start_recording(&self) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Vec::new());
-    }
-
-    /// Stops recording; the answers since [`Self::start_recording`], in the order of the calls.
-    pub fn take_answers(&self) -> Vec<Answer> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default()
-    }
-}
-
-/// Passes every query on unchanged, and records answers about two meshes.
+/// Passes every query on unchanged, and records answers about two meshes in the order of the calls.
+/// Recording allocates, so steps that record are not steps to time.
 pub struct Recording {
-    probe: Probe,
-    inner: SharedDispatcher,
-}
-
-impl Recording {
-    /// A dispatcher around `inner` that records into `probe`.
-    pub fn new(inner: SharedDispatcher, probe: Probe) -> Self {
-        Self { probe, inner }
-    }
+    pub inner: SharedDispatcher,
+    pub answers: Arc<Mutex<Vec<Answer>>>,
 }
 
 macro_rules! forward {
@@ -108,12 +85,10 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Recording {
     ) -> Result<(), Unsupported> {
         let result =
             (self.inner).contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
-        let mut answers = self.probe.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(answers) = &mut *answers
-            && [g1, g2].iter().all(|shape| shape.as_trimesh().is_some())
-        {
+        if [g1, g2].iter().all(|shape| shape.as_trimesh().is_some()) {
             let (shapes, manifolds) = ([g1, g2].map(shape_address), manifolds.clone());
-            answers.push(Answer { shapes, pos12: *pos12, prediction, manifolds });
+            let answer = Answer { shapes, pos12: *pos12, prediction, manifolds };
+            self.answers.lock().unwrap_or_else(PoisonError::into_inner).push(answer);
         }
         result
     }

@@ -38,7 +38,7 @@ pub fn play(
 ) -> io::Result<()> {
     let start = |&backend: &Backend| {
         let SceneWorld { mut world, .. } = scene.build();
-        let (dispatcher, _) = backend.install(&mut world);
+        let dispatcher = backend.install(&mut world);
         (Recorder::new(backend, &world), world, dispatcher)
     };
     let mut runs: Vec<_> = backends.iter().map(start).collect();

@@ -5,7 +5,8 @@
 
 use super::pair::times;
 use crate::prelude::*;
-use sbbk_testkit::probe::{Answer, Probe};
+use sbbk_testkit::probe::{Answer, Recording};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Pairs at the same poses that are judged at most.
 const JUDGED: usize = 200;
@@ -89,10 +90,8 @@ pub(super) fn run(scene: &dyn Scene, plan: &RunPlan, progress: &Progress) -> Vec
 
 /// A run of a scene on one backend.
 pub(super) struct Run {
-    backend: Backend,
     built: SceneWorld,
-    _dispatcher: Dispatcher,
-    probe: Probe,
+    dispatcher: Dispatcher,
     /// Times of the steps that were not judged, in order.
     times: Vec<StepTimes>,
     /// Errors of first queries for all contacts of triangles. The pairs are sampled from the broad phase.
@@ -106,10 +105,10 @@ pub(super) struct Run {
 impl Run {
     fn new(scene: &dyn Scene, backend: Backend) -> Self {
         let mut built = scene.build();
-        let (_dispatcher, probe) = backend.install(&mut built.world);
+        let dispatcher = backend.install(&mut built.world);
         let (times, pairs) = (Vec::new(), Vec::new());
         let [fresh, updated] = Default::default();
-        Self { backend, built, _dispatcher, probe, times, fresh, updated, pairs }
+        Self { built, dispatcher, times, fresh, updated, pairs }
     }
 
     /// Steps once, and judges contacts at the poses at the start of the step, where Rapier asks.
@@ -117,19 +116,23 @@ impl Run {
         let world = &mut self.built.world;
         self.pairs = Sequence::captured(world);
         let some: Vec<Sequence> = sample(&self.pairs, limit).cloned().collect();
-        let dispatcher = self.backend.per_triangle(some.iter().flat_map(|pair| &pair.shapes));
+        let dispatcher =
+            self.dispatcher.backend.per_triangle(some.iter().flat_map(|pair| &pair.shapes));
         let fresh = Sequence::errors(&some, &[dispatcher], |_| true);
         self.fresh += fresh[0].without_normals();
 
-        self.probe.start_recording();
+        let answers = Arc::new(Mutex::new(Vec::new()));
+        let inner = self.dispatcher.shared.clone();
+        world.narrow_phase.set_query_dispatcher(Recording { inner, answers: answers.clone() });
         world.step();
-        let answers = self.probe.take_answers();
+        self.dispatcher.serve(world);
+        let answers = answers.lock().unwrap_or_else(PoisonError::into_inner);
         let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
         let shapes: HashMap<usize, &SharedShape> =
             shapes.map(|shape| (shape_address(&**shape), shape)).collect();
         for Answer { shapes: pair, pos12, prediction, manifolds } in sample(&answers, limit) {
             let truth = Truth::of(pair.map(|address| shapes[&address]), pos12, *prediction);
-            let errors = match self.backend {
+            let errors = match self.dispatcher.backend {
                 Backend::Stock => truth.judge(manifolds),
                 _ => truth.judge_surfaces(manifolds),
             };
@@ -155,7 +158,7 @@ pub(super) fn summed_up(row: &Row, runs: &[Run]) -> Row {
         ("collision_detection", |times| times.broad_phase + times.narrow_phase),
         ("solver", |times| times.solver),
     ];
-    let row = Row { backend: first.backend.to_string(), ..row.clone() };
+    let row = Row { backend: first.dispatcher.backend.to_string(), ..row.clone() };
     let row = times.into_iter().fold(row, |row, (name, time)| {
         row.with(name, Summary::of(runs.iter().map(|run| run.mean(time))))
     });

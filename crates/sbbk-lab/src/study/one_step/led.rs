@@ -45,7 +45,7 @@ pub(super) struct Led {
 impl Led {
     pub fn new(scene: &dyn Scene, backend: Backend) -> Self {
         let mut built = scene.build();
-        let (_dispatcher, _) = backend.install(&mut built.world);
+        let _dispatcher = backend.install(&mut built.world);
         Self { built, _dispatcher, times: Vec::new() }
     }
 
