@@ -1,7 +1,7 @@
 //! Worlds whose bodies are led along a run.
 
 use crate::prelude::*;
-use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyMassProps, RigidBodyVelocity};
+use rapier3d::dynamics::{RigidBodyMassProps, RigidBodyVelocity};
 use rapier3d::geometry::InteractionGroups;
 
 /// Pose and velocity of a body.
@@ -9,12 +9,6 @@ use rapier3d::geometry::InteractionGroups;
 pub(super) struct Motion {
     pose: Pose,
     velocity: RigidBodyVelocity<Real>,
-}
-
-impl Motion {
-    fn of(body: &RigidBody) -> Self {
-        Self { pose: *body.position(), velocity: *body.vels() }
-    }
 }
 
 /// The watched bodies before each step of a run with default parameters, and after `last` steps.
@@ -36,7 +30,7 @@ pub(super) fn run(
 
 /// A world of a scene whose bodies are led.
 pub(super) struct Led {
-    built: SceneWorld,
+    pub built: SceneWorld,
     _dispatcher: Dispatcher,
     /// Milliseconds of all steps so far.
     pub times: Vec<f64>,
@@ -58,10 +52,6 @@ impl Led {
         led
     }
 
-    pub fn parameters(&mut self) -> &mut IntegrationParameters {
-        &mut self.built.world.integration_parameters
-    }
-
     /// Steps once from each state, with the contacts and impulses of the step before. Returns the
     /// motions after the last step.
     pub fn lead(&mut self, states: &[Vec<Motion>]) -> Vec<Motion> {
@@ -78,12 +68,9 @@ impl Led {
         self.motions()
     }
 
-    pub fn solver_points(&self) -> usize {
-        solver_points(&self.built.world)
-    }
-
     fn motions(&self) -> Vec<Motion> {
-        self.built.watched.iter().map(|&body| Motion::of(&self.built.world.bodies[body])).collect()
+        let bodies = self.built.watched.iter().map(|&body| &self.built.world.bodies[body]);
+        bodies.map(|body| Motion { pose: *body.position(), velocity: *body.vels() }).collect()
     }
 }
 

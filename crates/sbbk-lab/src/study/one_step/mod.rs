@@ -76,12 +76,7 @@ struct Seen {
 }
 
 pub fn one_step(plan: &OneStepPlan, progress: &Progress) -> Results {
-    let scene = MonkeyPile::with_heads(plan.heads);
-    let rows = steps(&scene, plan, progress);
-    Results::new("one_step", rows)
-}
-
-fn steps(scene: &dyn Scene, plan: &OneStepPlan, progress: &Progress) -> Vec<Row> {
+    let scene = &MonkeyPile::with_heads(plan.heads);
     let reference =
         Way { backend: REFERENCE, substeps: plan.reference_substeps, is_thinned: false };
     let mut ways = Vec::new();
@@ -107,18 +102,19 @@ fn steps(scene: &dyn Scene, plan: &OneStepPlan, progress: &Progress) -> Vec<Row>
             let (motions, mut led) = step(scene, &ways[index], lead);
             let seen = &mut seen[index];
             seen.errors.push(norm.distance(&motions, &right) / impulse);
-            seen.points.push(led.solver_points() as f64);
+            seen.points.push(solver_points(&led.built.world) as f64);
             seen.times.append(&mut led.times);
             progress.step();
         }
     }
-    ways.iter().zip(seen).map(|(way, seen)| row(scene, way, seen)).collect()
+    let rows = ways.iter().zip(seen).map(|(way, seen)| row(scene, way, seen));
+    Results::new("one_step", rows.collect())
 }
 
 /// The step after those that lead to it.
 fn step(scene: &dyn Scene, way: &Way, lead: &[Vec<Motion>]) -> (Vec<Motion>, Led) {
     let mut led = Led::new(scene, way.backend);
-    let parameters = led.parameters();
+    let parameters = &mut led.built.world.integration_parameters;
     parameters.num_solver_iterations = way.substeps;
     if !way.is_thinned {
         parameters.contact_clustering = false;
