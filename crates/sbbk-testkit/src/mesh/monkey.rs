@@ -27,6 +27,8 @@ struct Feature {
     profile: [i32; 2],
     pull: Vec3,
     stretch: Vec3,
+    /// Where the centre came to lie before this feature.
+    anchor: Vec3,
 }
 
 /// Half axes of the skull before the features, `x` across, `y` up, `z` to the face.
@@ -44,46 +46,30 @@ const FACE_FOCUS: Vec3 = Vec3::new(0.0, 0.0, 0.45);
 const SOFT: [i32; 2] = [2, 2];
 const SHARP: [i32; 2] = [1, 1];
 
-/// Centre, spread, profile, pull and stretch, from large to small: later features shape what the
+/// Profile, and centre, spread, pull and stretch. From large to small: later features shape what the
 /// earlier ones have made.
-const FEATURES: [Feature; 10] = [
+const FEATURES: [([i32; 2], [[f32; 3]; 4]); 10] = [
     // Jaw, narrower than the skull.
-    feature([0.0, -0.85, 0.35], [0.9; 3], SOFT, [0.0, -0.05, 0.10], [-0.25, 0.0, 0.0]),
+    (SOFT, [[0.0, -0.85, 0.35], [0.9; 3], [0.0, -0.05, 0.10], [-0.25, 0.0, 0.0]]),
     // Flat face below the forehead.
-    feature([0.0, 0.1, 1.0], [0.75, 0.55, 0.75], SOFT, [0.0, 0.0, -0.08], [0.0; 3]),
+    (SOFT, [[0.0, 0.1, 1.0], [0.75, 0.55, 0.75], [0.0, 0.0, -0.08], [0.0; 3]]),
     // Muzzle.
-    feature([0.0, -0.50, 0.86], [0.60, 0.45, 0.60], SOFT, [0.0, -0.06, 0.36], [0.30, 0.15, 0.0]),
+    (SOFT, [[0.0, -0.50, 0.86], [0.60, 0.45, 0.60], [0.0, -0.06, 0.36], [0.30, 0.15, 0.0]]),
     // Ears.
-    feature([0.98, 0.12, -0.05], [0.42; 3], SHARP, [0.52, 0.08, -0.12], [0.0, 1.0, -0.68]),
+    (SHARP, [[0.98, 0.12, -0.05], [0.42; 3], [0.52, 0.08, -0.12], [0.0, 1.0, -0.68]]),
     // Hollow of the ears.
-    feature([0.92, 0.12, 0.24], [0.26; 3], SOFT, [-0.07, 0.0, -0.09], [0.0; 3]),
+    (SOFT, [[0.92, 0.12, 0.24], [0.26; 3], [-0.07, 0.0, -0.09], [0.0; 3]]),
     // Brow, highest above each eye.
-    feature([0.26, 0.46, 0.86], [0.45, 0.24, 0.45], SOFT, [0.0, 0.0, 0.13], [0.0; 3]),
+    (SOFT, [[0.26, 0.46, 0.86], [0.45, 0.24, 0.45], [0.0, 0.0, 0.13], [0.0; 3]]),
     // Eye sockets.
-    feature([0.30, 0.12, 0.93], [0.26, 0.26, 0.4], SOFT, [0.0, 0.0, -0.20], [0.0; 3]),
+    (SOFT, [[0.30, 0.12, 0.93], [0.26, 0.26, 0.4], [0.0, 0.0, -0.20], [0.0; 3]]),
     // Eyeballs.
-    feature([0.30, 0.12, 0.93], [0.17, 0.17, 0.4], SOFT, [0.0, 0.0, 0.14], [0.0; 3]),
+    (SOFT, [[0.30, 0.12, 0.93], [0.17, 0.17, 0.4], [0.0, 0.0, 0.14], [0.0; 3]]),
     // Nose.
-    feature([0.0, -0.25, 0.97], [0.14, 0.11, 0.3], SOFT, [0.0, 0.0, 0.08], [0.0; 3]),
+    (SOFT, [[0.0, -0.25, 0.97], [0.14, 0.11, 0.3], [0.0, 0.0, 0.08], [0.0; 3]]),
     // Mouth.
-    feature([0.0, -0.47, 0.88], [0.50, 0.13, 0.6], SOFT, [0.0, 0.0, -0.13], [0.0; 3]),
+    (SOFT, [[0.0, -0.47, 0.88], [0.50, 0.13, 0.6], [0.0, 0.0, -0.13], [0.0; 3]]),
 ];
-
-const fn feature(
-    centre: [f32; 3],
-    spread: [f32; 3],
-    profile: [i32; 2],
-    pull: [f32; 3],
-    stretch: [f32; 3],
-) -> Feature {
-    Feature {
-        centre: Vec3::from_array(centre),
-        spread: Vec3::from_array(spread),
-        profile,
-        pull: Vec3::from_array(pull),
-        stretch: Vec3::from_array(stretch),
-    }
-}
 
 /// The monkey head in its usual resolution: 968 triangles, 486 vertices.
 pub fn monkey_head() -> Mesh {
@@ -95,9 +81,10 @@ pub fn monkey_head() -> Mesh {
 /// with concave eye sockets and ears.
 pub fn monkey_head_with(detail: u32) -> Mesh {
     let mut features = Vec::with_capacity(FEATURES.len());
-    for feature in &FEATURES {
-        let anchor = shaped(feature.centre.normalize(), &features);
-        features.push((feature, anchor));
+    for (profile, vectors) in FEATURES {
+        let [centre, spread, pull, stretch] = vectors.map(Vec3::from_array);
+        let anchor = shaped(centre.normalize(), &features);
+        features.push(Feature { centre, spread, profile, pull, stretch, anchor });
     }
     let head = octasphere(detail).mapped(|point| {
         let mirror = Vec3::new(1f32.copysign(point.x), 1.0, 1.0);
@@ -107,10 +94,10 @@ pub fn monkey_head_with(detail: u32) -> Mesh {
     head.centred().scaled_to(2.0).named("monkey head")
 }
 
-/// Maps a direction with `x >= 0` by these features, each with its anchor.
-fn shaped(direction: Vec3, features: &[(&Feature, Vec3)]) -> Vec3 {
-    features.iter().fold(direction * SKULL, |point, (feature, anchor)| {
-        let change = feature.pull + feature.stretch * (point - anchor);
+/// Maps a direction with `x >= 0` by these features.
+fn shaped(direction: Vec3, features: &[Feature]) -> Vec3 {
+    features.iter().fold(direction * SKULL, |point, feature| {
+        let change = feature.pull + feature.stretch * (point - feature.anchor);
         point + feature.weight(direction) * change
     })
 }
