@@ -17,10 +17,6 @@ fn for_each_pair(mut check: impl FnMut(&str, &Question, Pose)) {
     }
 }
 
-fn fresh(question: &Question, pose: Pose) -> Vec<Manifold> {
-    question.at(pose).fresh(&SbbkDispatcher::default())
-}
-
 /// Data of a host that panics when the countdown is over.
 #[derive(Clone)]
 struct Fragile;
@@ -47,7 +43,8 @@ fn a_query_cut_short_by_a_panic_is_asked_again() {
     for_each_pair(|name, question, other| {
         let dispatcher = SbbkDispatcher::default();
         let [before, expected] = [other, question.pose]
-            .map(|pose| fresh(question, pose).iter().map(bits).collect::<Vec<_>>());
+            .map(|pose| question.at(pose).fresh(&SbbkDispatcher::default()))
+            .map(|found| found.iter().map(bits).collect::<Vec<_>>());
         let apart = Pose::translation(0.0, 1.5, 0.0) * other;
         for countdown in 0..5 {
             for known in [None, Some(apart), Some(other)] {

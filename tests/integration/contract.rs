@@ -42,20 +42,16 @@ fn rings() -> [TriMesh; 2] {
     [shape(&mesh::torus(1.0, 0.3, 12, 6)), shape(&mesh::torus(1.4, 0.6, 16, 9))]
 }
 
-fn nowhere() -> Pose {
-    Pose::translation(Real::NAN, 0.0, 0.0)
-}
-
 /// Would catch a pair with manifolds and no workspace: Rapier would keep pointers to manifolds that
 /// are gone.
 #[test]
 fn there_is_a_workspace_wherever_there_are_or_were_manifolds() {
     let [one, two] = rings();
     let query = Question::new(&one, &two, touching(&mut Rand32::new(1), [&one, &two], 0.05));
-    let far = Pose::translation(100.0, 0.0, 0.0);
-    for first in [far, nowhere(), query.pose] {
+    let [far, nowhere] = [100.0, Real::NAN].map(|x| Pose::translation(x, 0.0, 0.0));
+    for first in [far, nowhere, query.pose] {
         let mut pair: Pair = Pair::default();
-        for pos12 in [first, far, query.pose, query.pose, nowhere(), far] {
+        for pos12 in [first, far, query.pose, query.pose, nowhere, far] {
             let had_some = !pair.manifolds.is_empty();
             pair.ask(&SbbkDispatcher::default(), &query.at(pos12));
             assert_eq!(pair.manifolds.is_empty(), pos12 != query.pose);

@@ -26,10 +26,6 @@ fn ask_twice(pair: &mut Pair, dispatcher: &SbbkDispatcher, query: &Question) {
     pair.ask(dispatcher, query);
 }
 
-fn with_idle_bytes(limit: usize) -> SbbkDispatcher {
-    with(|config| config.idle_tree_bytes = limit)
-}
-
 /// Counts of trees, idle trees, builds and hits.
 fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
     let SbbkStats { trees, internals, .. } = dispatcher.stats();
@@ -90,7 +86,7 @@ fn meshes_far_apart_need_no_tree() {
 #[test]
 fn idle_trees_go_when_there_is_no_room() {
     let mesh = ball();
-    let none_idle = with_idle_bytes(0);
+    let none_idle = with(|config| config.idle_tree_bytes = 0);
     let pairs = [touch(&none_idle, &mesh, &mesh), touch(&none_idle, &mesh, &mesh)];
     let [one, other] = pairs;
     drop(one);
@@ -122,7 +118,7 @@ fn releasing_idle_trees_leaves_those_in_use() {
 /// `Clone`).
 #[test]
 fn a_cloned_pair_keeps_its_trees() {
-    let dispatcher = with_idle_bytes(0);
+    let dispatcher = with(|config| config.idle_tree_bytes = 0);
     let mesh = ball();
     let mut pair = touch(&dispatcher, &mesh, &mesh);
     drop(pair.clone());
@@ -171,7 +167,7 @@ fn threads_build_one_tree_and_agree() {
 #[test]
 fn threads_come_and_go() {
     let mesh = ball();
-    let dispatcher = with_idle_bytes(0);
+    let dispatcher = with(|config| config.idle_tree_bytes = 0);
     let expected = Question::new(&mesh, &mesh, near()).fresh(&SbbkDispatcher::default());
     std::thread::scope(|scope| {
         for _ in 0..8 {

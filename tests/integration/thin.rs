@@ -14,10 +14,6 @@ fn floor() -> TriMesh {
     shape(&mesh::floor(10.0, 20))
 }
 
-fn ask(query: &Question) -> Vec<Manifold> {
-    query.fresh(&every())
-}
-
 /// A plate whose middle is a little behind the sheet may come from either side, so the contacts of the triangles hold it. Would
 /// catch a plate that is pushed through. Would also catch plates at rest, sunk by a millimetre, with contacts to both sides.
 #[test]
@@ -32,11 +28,11 @@ fn a_plate_a_little_behind_a_sheet_is_held() {
             let of = |found: Vec<Manifold>| found.iter().map(triangles).collect::<BTreeSet<_>>();
             let expected = of(query.fresh(&per_triangle()));
             assert!(expected.len() >= 4, "{expected:?} at {height}, tilted by {tilt}");
-            assert_eq!(of(ask(&query)), expected, "at {height}, tilted by {tilt}");
+            assert_eq!(of(query.fresh(&every())), expected, "at {height}, tilted by {tilt}");
         }
         for side in [1.0, -1.0] {
             let pose = Pose::translation(0.13, side * (HALF - 0.001), 0.21);
-            let found = ask(&Question::new(&floor, &plate, pose));
+            let found = Question::new(&floor, &plate, pose).fresh(&every());
             assert!(!found.is_empty());
             let is_apart = |manifold: &Manifold| side * manifold.local_n1.y > 0.99;
             assert!(found.iter().all(is_apart), "{cells} cells, side {side}");
@@ -52,7 +48,7 @@ fn far_contacts_are_four_corners() {
     let turn = Quat::from_rotation_y(0.3);
     for gap in [0.1, 0.3, 0.5] {
         let pose = Pose::from_parts(Vec3::new(0.1, gap + HALF, 0.2), turn);
-        let found = ask(&Question::new(&floor, &plate, pose).within(0.6));
+        let found = Question::new(&floor, &plate, pose).within(0.6).fresh(&every());
         for (i, manifold) in found.iter().enumerate() {
             assert!((1..=4).contains(&manifold.points.len()));
             let is_like = |other: &Manifold| other.local_n1.dot(manifold.local_n1) >= 0.996;

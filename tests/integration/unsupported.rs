@@ -12,11 +12,6 @@ fn broken_ball() -> TriMesh {
     shape(&ball)
 }
 
-/// A ball above another: the lowest vertex of the lower one is out of the way.
-fn above(height: Real) -> Pose {
-    Pose::translation(0.1, height, 0.05)
-}
-
 #[test]
 fn a_nan_vertex_is_an_error_of_prepare_and_leaves_the_other_triangles() {
     let dispatcher = SbbkDispatcher::default();
@@ -26,7 +21,8 @@ fn a_nan_vertex_is_an_error_of_prepare_and_leaves_the_other_triangles() {
         assert!(reason.contains(part), "{reason}");
     }
     assert!(dispatcher.prepare(&whole).is_ok());
-    let question = Question::new(&broken, &whole, above(1.9));
+    // The lowest vertex of the lower ball is out of the way.
+    let question = Question::new(&broken, &whole, Pose::translation(0.1, 1.9, 0.05));
     for question in [question, question.flipped(true)] {
         let found = question.fresh(&dispatcher);
         assert!(found.iter().any(|manifold| !manifold.points.is_empty()));
@@ -67,7 +63,7 @@ fn endless_meshes() -> Vec<TriMesh> {
 #[test]
 fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
     let whole = shape(&mesh::ball(1.0, 4));
-    let pos12 = above(0.6);
+    let pos12 = Pose::translation(0.1, 0.6, 0.05);
     let mut answered = 0;
     for (name, other, by_sbbk) in kinds() {
         for (number, endless) in endless_meshes().iter().enumerate() {
