@@ -14,18 +14,15 @@ fn mesh_pairs(world: &PhysicsWorld) -> impl Iterator<Item = Question<'_>> {
     })
 }
 
-fn scenes() -> [(Box<dyn Scene>, [usize; 4]); 2] {
-    let pile = MonkeyPile::with_heads(40);
-    // Steps at which to look: the ball on the rotor, and the pile from its first contacts on.
-    [(Box::new(HelicopterBallDrop), [21, 24, 35, 50]), (Box::new(pile), [41, 55, 75, 100])]
-}
-
 /// Would catch contacts missed, invented or wrong at the poses that occur in the paper's scenes,
 /// moved by stock Rapier.
 #[test]
 fn contacts_in_stocks_scenes_are_the_truths() {
-    let dispatcher = per_triangle();
-    let runs = [true, false].into_iter().flat_map(|has| scenes().map(|scene| (has, scene)));
+    let (dispatcher, pile) = (per_triangle(), MonkeyPile::with_heads(40));
+    // Steps at which to look: the ball on the rotor, and the pile from its first contacts on.
+    let scenes: [(&dyn Scene, [usize; 4]); 2] =
+        [(&HelicopterBallDrop, [21, 24, 35, 50]), (&pile, [41, 55, 75, 100])];
+    let runs = [true, false].into_iter().flat_map(|has| scenes.map(|scene| (has, scene)));
     for (contact_recycling, (scene, looks)) in runs {
         let mut world = scene.build().world;
         world.integration_parameters.contact_recycling = contact_recycling;

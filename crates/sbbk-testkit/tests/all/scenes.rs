@@ -6,21 +6,15 @@ use rapier3d::parry::query;
 use sbbk_testkit::mesh;
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, collider};
 
-/// Every scene, with the number of its moving bodies.
-fn scenes() -> Vec<(Box<dyn Scene>, usize)> {
-    vec![
-        (Box::new(HelicopterBallDrop), 1),
-        (Box::new(MonkeyPile::with_heads(30)), 30),
-        (Box::new(BoxStack), 10),
-        (Box::new(HeadOnSlope { angle: 0.17 }), 1),
-    ]
-}
-
 /// Would catch a forgotten, fixed or massless body, and bodies that start in each other, which the
 /// solver would blow apart.
 #[test]
 fn bodies_start_apart_and_touch_within_two_seconds() {
-    for (scene, count) in scenes() {
+    // Each with the number of its moving bodies.
+    let (pile, slope) = (MonkeyPile::with_heads(30), HeadOnSlope { angle: 0.17 });
+    let scenes: [(&dyn Scene, usize); 4] =
+        [(&HelicopterBallDrop, 1), (&pile, 30), (&BoxStack, 10), (&slope, 1)];
+    for (scene, count) in scenes {
         let name = scene.name();
         let mut built = scene.build();
         assert_eq!(built.watched.iter().collect::<HashSet<_>>().len(), count, "{name}");
