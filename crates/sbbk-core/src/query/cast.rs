@@ -29,11 +29,11 @@ use wide::f32x4;
 
 use crate::contact::{TriangleContact, contact};
 use crate::simd::Spread;
-use crate::traverse::{Along, Compare, NodeLanes, PairFrame, Placement, Toward, within};
-use crate::tree::{LeafBatch, Tree};
+use crate::traverse::{Along, Compare, NodeLanes, NodePair, PairFrame, Placement, Toward, within};
+use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 
-use super::seek::{FOUND, SearchScratch, seek};
+use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, TrianglePair};
 
 /// The definition of an impact.
@@ -107,10 +107,9 @@ pub fn cast(
     // Only earlier impacts matter.
     let (mut latest, mut first) = (f64::from(max_time), None::<Cast>);
     let velocity = velocity.as_dvec3();
-    let limit = |sweep: &Sweep<'_>| sweep.limit;
-    seek(trees, &mut sweep, limit, scratch, |sweep, batch1, batch2| {
-        let are_late = |first: &FirstNormal| first.are_late(latest, batch1, batch2);
-        if sweep.first.as_ref().is_some_and(are_late) {
+    seek(trees, &mut sweep, scratch, |sweep, batch1, batch2| {
+        let are_late = |first: &mut FirstNormal| first.toward.are_leaves_beyond(batch1, batch2);
+        if sweep.first.as_mut().is_some_and(are_late) {
             return;
         }
         for lane1 in 0..batch1.count() {
@@ -124,9 +123,10 @@ pub fn cast(
                 let is_first = |cast: &Cast| first.is_none_or(|first| cast.time < first.time);
                 if let Some(cast) = cast.filter(is_first) {
                     (first, latest) = (Some(cast), cast.time);
-                    let is_later = cast.time > 0.0;
-                    sweep.limit = if is_later { (cast.time as f32).next_up() } else { FOUND };
-                    sweep.first = FirstNormal::of(sweep, target_distance, cast.pair.contact.normal);
+                    sweep.first = FirstNormal::of(sweep, target_distance, &cast);
+                    let is_last = |first: &FirstNormal| first.toward.are_meshes_beyond(trees);
+                    let is_over = cast.time <= 0.0 || sweep.first.as_ref().is_some_and(is_last);
+                    sweep.limit = if is_over { FOUND } else { (cast.time as f32).next_up() };
                 }
             }
         }
@@ -311,28 +311,20 @@ struct Sweep<'a> {
 /// A normal of an impact, as a bound of other times. Bodies are within the target distance no sooner than along the normal.
 struct FirstNormal {
     toward: Toward,
-    /// Distance that counts as an impact.
-    target: f64,
-    /// Speed against the normal.
-    approach: f64,
-    /// Lower bound of one over this speed.
+    /// Lower bound of one over the speed against the normal.
     inverse_approach: f32,
 }
 
 impl FirstNormal {
     /// Returns `None` for a grazing impact.
-    fn of(sweep: &Sweep<'_>, target: f32, normal: DVec3) -> Option<Self> {
+    fn of(sweep: &Sweep<'_>, target: f32, Cast { time, pair, .. }: &Cast) -> Option<Self> {
+        let normal = pair.contact.normal;
         let approach = -normal.dot(sweep.velocity.as_dvec3());
         let inverse_approach = (1.0 / approach) as f32 * (1.0 - gamma(8));
-        let toward = Toward::new(sweep.frame, normal)?;
+        let way = time * (1.0 - AT_ONCE) * approach + f64::from(target);
+        let toward = Toward::new(sweep.frame, normal, way)?;
         let is_bound = approach > 0.0 && inverse_approach.is_finite();
-        is_bound.then_some(Self { toward, target: target.into(), approach, inverse_approach })
-    }
-
-    /// Returns true if triangles of two leaves are within the target distance no sooner than at a time.
-    fn are_late(&self, time: f64, batch1: &LeafBatch, batch2: &LeafBatch) -> bool {
-        let way = time * (1.0 - AT_ONCE) * self.approach + self.target;
-        self.toward.are_beyond(way, (way as f32).next_up(), batch1, batch2)
+        is_bound.then_some(Self { toward, inverse_approach })
     }
 
     #[inline(always)]
@@ -363,6 +355,16 @@ impl Sweep<'_> {
         let start = start * f32x4::splat(1.0 - gamma(8));
         let passes = (end * f32x4::splat(1.0 + gamma(8))).simd_lt(start);
         passes.bitselect(f32x4::splat(f32::INFINITY), start)
+    }
+}
+
+impl Bounds for Sweep<'_> {
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    fn are_beyond(&mut self, trees: (&Tree, &Tree), nodes: NodePair) -> bool {
+        self.first.as_mut().is_some_and(|first| first.toward.are_nodes_beyond(trees, nodes))
     }
 }
 

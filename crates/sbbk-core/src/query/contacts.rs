@@ -5,7 +5,7 @@ use crate::traverse::{OrderedOverlap, PairFrame, Placement, descend};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 
-use super::seek::{FOUND, SearchScratch, seek};
+use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::FoundPair;
 
 /// Calls `found` for each pair of triangles at a distance of at most `margin`, in units of frame 1.
@@ -63,8 +63,7 @@ pub fn meeting(
     let test = LeafTest::new(&frame);
     let mut overlap = OrderedOverlap { frame: &mut frame, limit: f32::INFINITY };
     let mut found = None;
-    let limit = |overlap: &OrderedOverlap<'_>| overlap.limit;
-    seek(trees, &mut overlap, limit, scratch, |overlap, batch1, batch2| {
+    seek(trees, &mut overlap, scratch, |overlap, batch1, batch2| {
         test.survivors(batch1, batch2, |lane1, lane2| {
             if found.is_none() {
                 let (one, two) = (batch1.triangle(lane1), batch2.triangle(lane2));
@@ -76,4 +75,10 @@ pub fn meeting(
         }
     });
     found
+}
+
+impl Bounds for OrderedOverlap<'_> {
+    fn limit(&self) -> f32 {
+        self.limit
+    }
 }

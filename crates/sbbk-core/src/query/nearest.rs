@@ -1,7 +1,7 @@
 //! The nearest or the deepest pair of triangles.
 //!
-//! Pairs of triangles of two parallel faces are equally near, and rounding in `f32` lowers their bounds. Leaves are
-//! therefore compared along the normal of the nearest pair in `f64` ([`Toward::are_beyond`]).
+//! Pairs of triangles of two parallel faces are equally near, and rounding in `f32` lowers their bounds. Leaves and nodes are
+//! therefore compared along the normal of the nearest pair in `f64` ([`Toward`]).
 
 use glamx::{DVec3, Vec3};
 use wide::f32x4;
@@ -14,7 +14,7 @@ use crate::traverse::{
 };
 use crate::tree::{LeafBatch, Tree};
 
-use super::seek::{FOUND, SearchScratch, seek};
+use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, TrianglePair};
 
 /// The pair of triangles to find.
@@ -74,14 +74,14 @@ pub(super) fn search(
     let test = LeafTest::new(&frame);
     // Bounds are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
     let gaps = &mut SignedGaps { frame: &mut frame, limit: best as f32, toward: None };
-    let mut search = NearestSearch { placement, test, goal, excluded, best, found: None, count: 0 };
+    let mut search =
+        NearestSearch { trees, placement, test, goal, excluded, best, found: None, count: 0 };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
     if best > 0.0 {
         let (leaf1, leaf2) = near_leaves(trees, gaps.frame);
         search.leaves(gaps, leaf1, leaf2);
     }
-    let limit = |gaps: &SignedGaps<'_>| gaps.limit;
-    seek(trees, gaps, limit, scratch, |gaps, leaf1, leaf2| search.leaves(gaps, leaf1, leaf2));
+    seek(trees, gaps, scratch, |gaps, leaf1, leaf2| search.leaves(gaps, leaf1, leaf2));
     (search.found, [gaps.frame.counts.aabb_tests, search.count])
 }
 
@@ -92,7 +92,18 @@ fn some_distance((tree1, tree2): (&Tree, &Tree), placement: &Placement) -> f64 {
     distance * (1.0 + 1.0e-9)
 }
 
+impl Bounds for SignedGaps<'_> {
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    fn are_beyond(&mut self, trees: (&Tree, &Tree), nodes: NodePair) -> bool {
+        self.toward.as_mut().is_some_and(|toward| toward.are_nodes_beyond(trees, nodes))
+    }
+}
+
 struct NearestSearch<'a> {
+    trees: (&'a Tree, &'a Tree),
     placement: Placement,
     test: LeafTest,
     goal: Goal,
@@ -143,13 +154,16 @@ impl NearestSearch<'_> {
         // The normal of crossing triangles tells nothing about other pairs.
         gaps.toward = None;
         if self.best > 0.0 {
-            gaps.toward = Toward::new(gaps.frame, normal);
+            gaps.toward = Toward::new(gaps.frame, normal, self.best);
+        }
+        if gaps.toward.as_ref().is_some_and(|toward| toward.are_meshes_beyond(self.trees)) {
+            gaps.limit = FOUND;
         }
     }
 
     fn leaves(&mut self, gaps: &mut SignedGaps<'_>, batch1: &LeafBatch, batch2: &LeafBatch) {
-        let are_beyond = |toward: &Toward| toward.are_beyond(self.best, gaps.limit, batch1, batch2);
-        if gaps.toward.as_ref().is_some_and(are_beyond) {
+        let are_beyond = |toward: &mut Toward| toward.are_leaves_beyond(batch1, batch2);
+        if gaps.toward.as_mut().is_some_and(are_beyond) {
             return;
         }
         let test = self.test.within(gaps.limit);
@@ -232,26 +246,39 @@ mod tests {
         }
     }
 
-    /// A plane over another one, with 64 and 16,384 cells. Would catch exact tests of all pairs that are equally near.
+    /// Planes of 8192 and 32,768 triangles over each other, flat and tilted, without and with a wall beside them. Would catch
+    /// comparisons of all pairs that are equally near.
     #[test]
-    fn few_triangles_of_parallel_faces_are_compared() {
-        let plane = |cells: u32, size: f32| -> Tree {
+    fn few_pairs_of_parallel_faces_are_compared() {
+        // All coordinates are exact.
+        let plane = |cells: u32, size: f32, slope: f32, wall: bool| -> Tree {
             let at = |i: u32| size * (i as f32 / cells as f32 - 0.5);
-            let places = (0..=cells).flat_map(|i| (0..=cells).map(move |j| [i, j]));
-            let vertices: Vec<_> = places.map(|[i, j]| Vec3::new(at(i), 0.0, at(j))).collect();
+            let places = (0..=cells).flat_map(|i| (0..=cells).map(move |j| [at(i), at(j)]));
+            let vertices = places.map(|[x, z]| Vec3::new(x, slope * (x + 0.5 * z), z));
+            let walls = [[2.0, -3.0, 0.0], [2.0, 3.0, 0.0], [2.0, -3.0, 1.0]].map(Vec3::from_array);
+            let all: Vec<_> = vertices.chain(walls).collect();
             let corners = (0..cells).flat_map(|i| (0..cells).map(move |j| i * (cells + 1) + j));
             let cell = |a: u32| [[a, a + 1, a + cells + 1], [a + 1, a + cells + 2, a + cells + 1]];
-            let triangles: Vec<_> = corners.flat_map(cell).collect();
-            Tree::build(&vertices, &triangles, None).unwrap()
+            let mut triangles: Vec<_> = corners.flat_map(cell).collect();
+            let first = all.len() as u32 - 3;
+            triangles.extend(wall.then_some([first, first + 1, first + 2]));
+            Tree::build(&all, &triangles, None).unwrap()
         };
-        let (large, small) = (plane(128, 2.0), plane(8, 0.7));
-        let placement = Placement::new(&Pose3::translation(0.1, 1.4, 0.2));
         let mut scratch = SearchScratch::default();
-        for trees in [(&large, &small), (&small, &large)] {
-            let (found, counts) =
-                search(trees, placement, f64::INFINITY, Goal::Nearest, &[], &mut scratch);
-            let distance = found.unwrap().contact.distance;
-            assert!((distance - 1.4).abs() < 1e-6 && counts[1] < 64, "{distance}, {counts:?}");
+        for (slope, wall, most) in
+            [(0.0, false, 0), (0.0, true, 4000), (0.5, false, 60_000), (0.5, true, 60_000)]
+        {
+            let (large, small) = (plane(128, 2.0, slope, wall), plane(64, 0.5, slope, false));
+            let normal = Vec3::new(-slope, 1.0, -0.5 * slope).normalize();
+            for (trees, offset) in [((&large, &small), 1.4), ((&small, &large), -1.4)] {
+                let placement =
+                    Placement::new(&Pose3 { translation: offset * normal, ..Pose3::IDENTITY });
+                let (found, counts) =
+                    search(trees, placement, f64::INFINITY, Goal::Nearest, &[], &mut scratch);
+                let distance = found.unwrap().contact.distance;
+                assert!((distance - 1.4).abs() < 1e-6, "{distance}");
+                assert!(counts[0] <= most && counts[1] < 64, "{counts:?} for {slope}, {wall}");
+            }
         }
     }
 }

@@ -19,28 +19,37 @@ pub struct SearchScratch {
 /// The limit that ends a search.
 pub(super) const FOUND: f32 = f32::NEG_INFINITY;
 
-/// Goes through all pairs of leaves that may matter. The keys of `bounds` are lower bounds. Pairs with a bound above
-/// `limit` cannot matter, and [`FOUND`] ends the search. `leaves` may lower the limit.
-pub(super) fn seek<B: Compare<Key = f32>>(
+/// Lower bounds of pairs of nodes, and what they are compared with.
+pub(super) trait Bounds: Compare<Key = f32> {
+    /// Pairs with a bound above this cannot matter. [`FOUND`] ends the search.
+    fn limit(&self) -> f32;
+
+    /// Returns true if a second look, which may take longer, tells that a pair of nodes cannot matter.
+    fn are_beyond(&mut self, _trees: (&Tree, &Tree), _nodes: NodePair) -> bool {
+        false
+    }
+}
+
+/// Goes through all pairs of leaves that may matter. `leaves` may lower the limit.
+pub(super) fn seek<B: Bounds>(
     trees: (&Tree, &Tree),
     bounds: &mut B,
-    limit: impl Fn(&B) -> f32,
     scratch: &mut SearchScratch,
     mut leaves: impl FnMut(&mut B, &LeafBatch, &LeafBatch),
 ) {
     let roots = (f32::NEG_INFINITY, NodePair::ROOTS);
-    best_first(&mut scratch.stack, roots, |key, pair, stack| {
-        if limit(bounds) == FOUND {
+    best_first(&mut scratch.stack, roots, |key, slots, stack| {
+        if bounds.limit() == FOUND {
             return ControlFlow::Break(());
         }
         // A bound that is NaN prunes nothing.
-        if key > limit(bounds) {
+        if key > bounds.limit() || bounds.are_beyond(trees, slots) {
             return ControlFlow::Continue(());
         }
-        if let Some((leaf1, leaf2)) = leaves_at(trees, pair) {
+        if let Some((leaf1, leaf2)) = leaves_at(trees, slots) {
             leaves(bounds, leaf1, leaf2);
         } else {
-            expand(trees, pair, bounds, |pair, key| stack.push((key, pair)));
+            expand(trees, slots, bounds, |slots, key| stack.push((key, slots)));
         }
         ControlFlow::Continue(())
     });

@@ -190,7 +190,7 @@ mod tests {
         #[test]
         fn walks_end_for_any_twins(numbers in vec(any::<u32>(), 3..300)) {
             let count = numbers.len() as u32 / 3 * 3;
-            let twin = |number: &u32| (number % 16 > 0).then_some(number / 16 % count);
+            let twin = |number: &u32| (!number.is_multiple_of(16)).then_some(number / 16 % count);
             let facets = AnyTwins(numbers.iter().map(twin).collect());
             for half_edge in 0..count {
                 let (feature, mut steps) = (Feature::Vertex((half_edge % 3) as u8), 0);

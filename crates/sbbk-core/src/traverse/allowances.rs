@@ -239,7 +239,7 @@ fn bounds_are_below_those_of_corners_and_not_far_below() {
         let pair = Pair::random(random, i);
         let (mut frame, nodes) = (pair.frame(0.7), pair.nodes());
         let normal = random.vector(1.0).as_dvec3().normalize();
-        let toward = Toward::new(&frame, normal).unwrap();
+        let toward = Toward::new(&frame, normal, f64::INFINITY).unwrap();
         let [of_kdops, of_boxes] =
             [nodes.kdops, None].map(|kdops| toward.gaps(&NodeLanes { kdops, ..nodes }).to_array());
         let signed = frame.signed_gaps(&nodes).to_array();
@@ -282,5 +282,5 @@ fn there_is_no_direction_where_projections_may_overflow() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| 2.0e38 * corner);
     let tree = Tree::build(&corners, &[[0, 1, 2]], None).unwrap();
     let frame = PairFrame::new((&tree, &tree), Placement::new(&Pose3::IDENTITY), 0.0);
-    assert!(Toward::new(&frame, DVec3::X).is_none());
+    assert!(Toward::new(&frame, DVec3::X, 1.0).is_none());
 }

@@ -51,8 +51,8 @@ pub struct Tree {
     kdop_pairs: Vec<Pair<SLABS>>,
     leaves: Vec<LeafBatch>,
     triangle_count: u32,
-    /// The largest absolute coordinate, to which rounding errors are proportional.
-    magnitude: f32,
+    /// The box around the mesh, without rounding.
+    bounds: Aabb,
     stats: BuildStats,
 }
 
@@ -145,15 +145,20 @@ impl Tree {
     /// A ball around the mesh: the sphere of the root, or else one around its box.
     pub fn bounding_ball(&self) -> Sphere {
         self.sphere.unwrap_or_else(|| {
-            let aabb = self.children(0).aabb(0);
-            let radius = 0.5 * (aabb.max - aabb.min).length() * (1.0 + gamma(8));
-            Sphere { centre: aabb.centre(), radius: radius + gamma(8) * self.magnitude }
+            let Aabb { min, max } = self.bounds;
+            let radius = 0.5 * (max - min).length() * (1.0 + gamma(8));
+            Sphere { centre: self.bounds.centre(), radius: radius + gamma(8) * self.magnitude() }
         })
     }
 
-    /// The largest absolute coordinate of the mesh in its own frame.
+    /// The largest absolute coordinate of the mesh in its own frame, to which rounding errors are proportional.
     pub fn magnitude(&self) -> f32 {
-        self.magnitude
+        self.bounds.magnitude()
+    }
+
+    /// The box around the mesh, without rounding.
+    pub(crate) fn bounds(&self) -> Aabb {
+        self.bounds
     }
 
     /// Depth, layers and memory of the tree.

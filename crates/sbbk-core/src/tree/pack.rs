@@ -37,7 +37,7 @@ pub(super) fn pack(
         kdop_pairs,
         leaves,
         triangle_count: triangles.len() as u32,
-        magnitude: built.nodes[0].aabb.magnitude(),
+        bounds: built.nodes[0].aabb,
         stats: BuildStats { depth, layers, kdop_cut, bytes },
     }
 }

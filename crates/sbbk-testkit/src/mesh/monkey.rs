@@ -27,7 +27,7 @@ struct Feature {
     profile: [i32; 2],
     pull: Vec3,
     stretch: Vec3,
-    /// Where the centre came to lie before this feature.
+    /// Place of the centre before this feature.
     anchor: Vec3,
 }
 
