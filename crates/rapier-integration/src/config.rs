@@ -38,7 +38,7 @@ pub struct Kinds {
     pub meshes: bool,
     /// Height fields. In stock Rapier a mesh falls through them. Default: true.
     pub height_fields: bool,
-    /// Convex shapes of every kind. Default: true.
+    /// Convex shapes of every kind, also in queries without manifolds. Default: true.
     pub convex_shapes: bool,
     /// Compounds of convex shapes, and polylines. Default: true.
     pub composites: bool,

@@ -6,11 +6,11 @@
 //! Parry can:
 //!
 //! ```
-//! use parry3d::math::{Pose, Real, Vector};
-//! use parry3d::query::{Unsupported, details::ShapeCastOptions, *};
-//! use parry3d::shape::{Ball, Shape};
+//! use rapier3d::parry::math::{Pose, Real, Vector};
+//! use rapier3d::parry::query::details::{NormalConstraints, ShapeCastOptions};
+//! use rapier3d::parry::query::*;
+//! use rapier3d::parry::shape::{Ball, Shape};
 //! use rapier_integration::SbbkDispatcher;
-//! # use parry3d::query::details::NormalConstraints;
 //!
 //! /// Lets balls pass through balls, and handles no other pairs.
 //! struct Ghosts;
@@ -31,27 +31,54 @@
 //!     ) -> Result<(), Unsupported> {
 //!         ghosts(g1, g2).map(|()| manifolds.clear())
 //!     }
-//!     // ...
-//! #   fn contact_manifold_convex_convex(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape,
-//! #       _: Option<&dyn NormalConstraints>, _: Option<&dyn NormalConstraints>, _: Real,
-//! #       _: &mut ContactManifold<M, C>) -> Result<(), Unsupported> { Err(Unsupported) }
+//!
+//!     fn contact_manifold_convex_convex(
+//!         &self,
+//!         _: &Pose,
+//!         _: &dyn Shape,
+//!         _: &dyn Shape,
+//!         _: Option<&dyn NormalConstraints>,
+//!         _: Option<&dyn NormalConstraints>,
+//!         _: Real,
+//!         _: &mut ContactManifold<M, C>,
+//!     ) -> Result<(), Unsupported> {
+//!         Err(Unsupported)
+//!     }
 //! }
-//! # impl QueryDispatcher for Ghosts {
-//! #     fn intersection_test(&self, _: &Pose, g1: &dyn Shape, g2: &dyn Shape)
-//! #         -> Result<ShapeIntersection, Unsupported> {
-//! #         ghosts(g1, g2).map(|()| ShapeIntersection::new(false)) }
-//! #     fn distance(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape)
-//! #         -> Result<ShapeDistance, Unsupported> { Err(Unsupported) }
-//! #     fn contact(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape, _: Real)
-//! #         -> Result<Option<Contact>, Unsupported> { Err(Unsupported) }
-//! #     fn closest_points(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape, _: Real)
-//! #         -> Result<ClosestPoints, Unsupported> { Err(Unsupported) }
-//! #     fn cast_shapes(&self, _: &Pose, _: Vector, _: &dyn Shape, _: &dyn Shape,
-//! #         _: ShapeCastOptions) -> Result<Option<ShapeCastHit>, Unsupported> { Err(Unsupported) }
-//! #     fn cast_shapes_nonlinear(&self, _: &NonlinearRigidMotion, _: &dyn Shape,
-//! #         _: &NonlinearRigidMotion, _: &dyn Shape, _: Real, _: Real, _: bool)
-//! #         -> Result<Option<ShapeCastHit>, Unsupported> { Err(Unsupported) }
-//! # }
+//!
+//! type Answer<T> = Result<T, Unsupported>;
+//! type Motion = NonlinearRigidMotion;
+//!
+//! #[rustfmt::skip]
+//! impl QueryDispatcher for Ghosts {
+//!     fn intersection_test(&self, _: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Answer<ShapeIntersection> {
+//!         ghosts(g1, g2).map(|()| ShapeIntersection::new(false))
+//!     }
+//!
+//!     fn distance(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape) -> Answer<ShapeDistance> {
+//!         Err(Unsupported)
+//!     }
+//!
+//!     fn contact(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape, _: Real) -> Answer<Option<Contact>> {
+//!         Err(Unsupported)
+//!     }
+//!
+//!     fn closest_points(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape, _: Real) -> Answer<ClosestPoints> {
+//!         Err(Unsupported)
+//!     }
+//!
+//!     fn cast_shapes(
+//!         &self, _: &Pose, _: Vector, _: &dyn Shape, _: &dyn Shape, _: ShapeCastOptions,
+//!     ) -> Answer<Option<ShapeCastHit>> {
+//!         Err(Unsupported)
+//!     }
+//!
+//!     fn cast_shapes_nonlinear(
+//!         &self, _: &Motion, _: &dyn Shape, _: &Motion, _: &dyn Shape, _: Real, _: Real, _: bool,
+//!     ) -> Answer<Option<ShapeCastHit>> {
+//!         Err(Unsupported)
+//!     }
+//! }
 //!
 //! let dispatcher = Ghosts.chain(SbbkDispatcher::default());
 //! let (ball, at) = (Ball::new(1.0), Pose::translation(0.5, 0.0, 0.0));

@@ -42,6 +42,8 @@ impl SbbkDispatcher {
     /// Registers a mesh by its address: builds the tree of a large mesh at load time, and detects
     /// whether the mesh is a solid.
     ///
+    /// Takes about 0.85 µs and 92 bytes a triangle.
+    ///
     /// Use the shape and its clones for colliders, and keep the result: when it and its clones are
     /// dropped, the registration ends. Meanwhile `SharedShape::make_mut` edits a copy, which is not
     /// registered. Returns `None` for a shape that is no rigid mesh.
@@ -71,7 +73,7 @@ impl SbbkDispatcher {
         Ok(Some(PreparedTree(self.store.register(mesh, Some(shape))?)))
     }
 
-    /// Registers a mesh and all its copies, and builds its tree now instead of in a step.
+    /// Registers a mesh and all its copies, and builds its tree now instead of in a step. Takes about 0.85 µs and 92 bytes a triangle.
     ///
     /// Each new pair finds the tree by a hash of the content, which takes about 4 ns a triangle:
     /// [`prepare_shape`](Self::prepare_shape) is better for large meshes that are one shape and its
@@ -105,8 +107,8 @@ impl SbbkDispatcher {
         self.store.registered(mesh).is_some()
     }
 
-    /// Returns what this mesh is taken for. A deformable mesh is a sheet. Analyses the mesh if no
-    /// query has done so, in up to 50 ms.
+    /// Returns what this mesh is taken for. A deformable mesh is a sheet, and so is one with a vertex that is NaN or infinite in
+    /// its box. Analyses the mesh if no query has done so, in up to 50 ms.
     pub fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
         let Some(view) = self.store.view(mesh) else { return SurfaceKind::Sheet };
         let mut known = PairMesh::default();

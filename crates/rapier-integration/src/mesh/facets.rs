@@ -213,7 +213,7 @@ impl Facets for MeshFacets<'_> {
 const IMPACT_RISE: f64 = 1.0e-4;
 
 /// Returns true if no triangle at the place of an impact leads towards the other body. `other` has the unit direction to that body,
-/// and its distance.
+/// and its distance. The search takes triangles by their boxes and needs no twins.
 pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, other: (DVec3, f64)) -> bool {
     let (known, memo) = (Neighbours::new(0), PlaceMemo::default());
     let twins = Twins::Near(&known);

@@ -123,7 +123,7 @@ impl<'s> Contour<'s> {
         (is_closed && area.length() > COHERENT * swept).then(|| Self {
             segments,
             length,
-            middle: middle - INSET * length / length * outward,
+            middle: middle - INSET * outward,
             normal,
             is_flat: ends.all(|end| (end - middle).dot(normal).abs() <= UNEVEN * length),
         })

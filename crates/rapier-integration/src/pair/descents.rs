@@ -44,8 +44,8 @@ const LEAST_REACH: f64 = 0.1;
 /// have contacts late.
 const REACH_PER_TRIANGLE: f64 = 0.25;
 
-/// Greatest reach by the size of triangles that replaces the other reach, as a share of the other one. Higher: far contacts take more time than the smaller reach saves.
-/// Lower: fine meshes cost more.
+/// The reach by triangle size is used if it is below this share of the other reach. Higher: far contacts take more time than
+/// the smaller reach saves. Lower: fine meshes cost more.
 const MUCH_LESS: f64 = 0.75;
 
 /// Greatest product of the numbers of triangles near the other shape with which all pairs are candidates.

@@ -256,8 +256,8 @@ impl<'a> HeldMesh<'a> {
         self.pose.in_other(1 - self.outer, point)
     }
 
-    /// Returns true if the larger mesh is lower than a height where `point` is in it. `exit` is the nearest point of the surface.
-    /// `outward` is the sign with which normals lead out of the mesh.
+    /// Returns true if the larger mesh is thinner than a height at `point`, measured along the line through `exit`, its nearest
+    /// point. `outward` is the sign with which normals lead out of the mesh.
     fn is_lower(&self, height: Real, point: Vector, exit: Vector, outward: f64) -> bool {
         let most = height - exit.distance(point);
         let ray = Ray::new(point, (point - exit).normalize_or_zero());

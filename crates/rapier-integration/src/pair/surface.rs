@@ -251,7 +251,7 @@ impl<'a> SurfaceFilter<'a> {
     /// thin wall, behind which the sheet is.
     pub(super) fn find_extremal(&self, crossing: &mut Crossing) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let good = self.outward().extremal(ends, crossing.greatest);
+        let good = self.outward_axes().extremal(ends, crossing.greatest);
         crossing.is_reliable = good.is_some();
         (crossing.normal, crossing.depth) =
             good.map_or_else(Default::default, |good| (good.normal, -good.distance));
@@ -316,7 +316,7 @@ impl<'a> SurfaceFilter<'a> {
     ) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
         let agrees = |normal: DVec3| support.agrees(normal);
-        let contact = self.outward().least(ends, agrees)?;
+        let contact = self.outward_axes().least(ends, agrees)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -crossing.greatest;
         if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {
@@ -326,7 +326,7 @@ impl<'a> SurfaceFilter<'a> {
     }
 
     /// Returns the axes that lead out of the shapes.
-    fn outward(&self) -> Outward<'_> {
+    fn outward_axes(&self) -> Outward<'_> {
         let cones = [0, 1].map(|i| self.least_square(i));
         Outward::new(self.local.corners.each_ref(), self.outward_signs(), cones)
     }
@@ -354,8 +354,7 @@ impl<'a> SurfaceFilter<'a> {
             && self.local.corners.iter().any(|corners| leans(corners, normal))
     }
 
-    /// Returns the normal of a face at whose border a contact is, as a contact of the face would have it. The other shape must be all
-    /// on one side of the face.
+    /// Returns the normal of the face for a contact at its border. The other shape must be all on one side of the face.
     fn normal_at_border(&self, i: usize, contact: &TriangleContact) -> Option<DVec3> {
         let feature = feature(contact, i);
         if feature == Feature::Face {

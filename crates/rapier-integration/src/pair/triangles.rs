@@ -304,7 +304,7 @@ impl PairQuery for TriangleQuery<'_> {
         }
         let lead_one_way = meet_borders(upright, contacts);
         if !islands.crossings.is_empty() {
-            self.add_of_islands(islands, contours, contacts);
+            self.add_island_contacts(islands, contours, contacts);
         }
         if self.settle_one_ways(islands) {
             self.second_pass(islands, contacts);
@@ -315,7 +315,7 @@ impl PairQuery for TriangleQuery<'_> {
         } else if limits.reach > self.shapes.filter_distance {
             self.shapes.thin_out_far(directions, islands, contacts);
         }
-        self.add_of_crossing(islands, contacts);
+        self.add_if_all_apart(islands, contacts);
         self.shapes.reject_through(&islands.crossings, contacts);
         if contacts.is_empty() {
             let held = HeldMesh::of(&self.shapes);

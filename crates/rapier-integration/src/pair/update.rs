@@ -60,7 +60,8 @@ where
         writer.write_every(&mut query, &mut lent);
     }
     writer.end();
-    if lent.demand.update(lent.contacts.len()).is_some_and(|limit| limit >= LEAST_KEPT) {
+    let count = lent.contacts.len().max(memory.candidates.len());
+    if lent.demand.update(count).is_some_and(|limit| limit >= LEAST_KEPT) {
         *lent = QueryMemory { demand: lent.demand, ..QueryMemory::default() };
     }
     P::Query::memory().set(Some(lent));

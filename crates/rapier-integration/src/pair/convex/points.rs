@@ -111,8 +111,8 @@ fn overlap_points(
     has_closest
 }
 
-/// Other points of an edge along a border may be farther from the border than the nearest one, by this share. Higher: rods that stick
-/// out over a cliff are held up. Lower: rods that roll over a border turn.
+/// An end of an edge counts if its distance from the border exceeds the least one by less than this share. Higher: rods that
+/// stick out over a cliff are held up. Lower: rods that roll over a border turn.
 const ALONG_BORDER: f64 = 0.1;
 
 /// Calls `found` with the ends of the part of a shape's edge that is along a border. The nearest points alone would turn a rod that

@@ -19,8 +19,8 @@ use crate::pair::ways::{
 /// the edge that they slide over. Lower: rounding decides about contacts along the surface.
 const TANGENTIAL: f64 = 1.0e-4;
 
-/// Share of a distance by which an equal one may differ. Higher: contacts apart are lost. Lower: bodies catch on the foot of a step or chamfer
-/// that they slide over.
+/// Two distances count as equal if they differ by less than this share. Higher: contacts apart are lost. Lower: bodies catch on
+/// the foot of a step or chamfer that they slide over.
 const AT_ONE_PLACE: f64 = 1.0e-6;
 
 impl ConvexQuery<'_> {
@@ -82,8 +82,8 @@ impl ConvexQuery<'_> {
         }));
     }
 
-    /// Finds contacts apart at whose points the triangle of a removed contact is nearer than `near` times as far. The way to them leads
-    /// through that triangle.
+    /// Finds contacts apart that are behind the triangle of a removed contact: at their points, that triangle is nearer than
+    /// `near` times their distance.
     fn find_behind(
         &self,
         contacts: &[Hit],

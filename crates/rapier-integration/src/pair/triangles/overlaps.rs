@@ -26,7 +26,7 @@ impl<T: Send> ChunkResult for ContactList<T> {
 impl TriangleQuery<'_> {
     /// Adds the contacts of crossing triangles, and drops triangles that do not cross after all.
     #[inline(never)]
-    pub(super) fn add_of_islands(
+    pub(super) fn add_island_contacts(
         &self,
         islands: &mut OverlapIslands,
         contours: &mut ContourMemory,
@@ -100,7 +100,7 @@ impl TriangleQuery<'_> {
     }
 
     /// Adds the contacts of crossing triangles if all contacts are apart, as these do not part the triangles.
-    pub(super) fn add_of_crossing(
+    pub(super) fn add_if_all_apart(
         &self,
         islands: &OverlapIslands,
         contacts: &mut ContactList<TriangleSurfaceContact>,
