@@ -172,12 +172,13 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
 
     /// Finds the side of a triangle.
     pub(super) fn side(&self, triangle: u32) -> Side {
-        let first = self.sample(triangle, 0);
+        let (first, is_sure) = self.sample(triangle, 0);
         if first == Side::Outer {
             return first;
         }
-        let second = self.sample(triangle, 1);
-        let is_doubted = second != first && second == self.sample(triangle, 2);
+        let sample = |i| self.sample(triangle, i).0;
+        let second = if is_sure { first } else { sample(1) };
+        let is_doubted = second != first && second == sample(2);
         let side = if is_doubted { second } else { first };
         // A point is outside only if two pairs of rays say so: single rays pass where boxes are flush.
         let is_inner_at = |start| {
@@ -198,14 +199,16 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
     }
 
     /// Sends a ray to the front of a triangle and another to the back, and tells the side between them. A ray from a face to the
-    /// back may leave through a triangle that is wound the other way.
-    fn sample(&self, triangle: u32, i: u32) -> Side {
-        let Some(rays) = Rays::from_middle(self, triangle, i, STEEP) else { return Side::Sheet };
+    /// back may leave through a triangle that is wound the other way. Also returns true if the rays cannot be wrong.
+    fn sample(&self, triangle: u32, i: u32) -> (Side, bool) {
+        let rays = Rays::from_middle(self, triangle, i, STEEP);
+        let Some(rays) = rays else { return (Side::Sheet, false) };
         let leaves_turned = || rays.winding(1, |_| true).is_some_and(|back| back < 0);
-        match rays.side_without_walls() {
+        let side = match rays.side_without_walls() {
             Side::Sheet if leaves_turned() => Side::Outer,
             side => side,
-        }
+        };
+        (side, rays.is_exact.get())
     }
 
     /// Like [`sample`](Self::sample), with rays of any slope. A place within the body is no hole, so the rays need not leave
@@ -244,9 +247,8 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         !is_wall
     }
 
-    /// True if the body is behind all triangles that have nothing in front, as winding numbers change by one at a triangle. False
-    /// for two closed layers at one place.
-    fn has_body_behind(&self) -> bool {
+    /// True if the winding number behind each triangle is one more than in front. False for two closed layers at one place.
+    fn are_steps_of_one(&self) -> bool {
         self.components.is_some_and(|known| known.is_manifold)
     }
 
@@ -374,10 +376,11 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
     /// What the rays find if only triangles count for which `counts` is true.
     fn side(&self, counts: impl Fn(u32) -> bool) -> Side {
         let Some(front) = self.winding(0, &counts) else { return Side::Outer };
-        if front == 0 && self.mesh.has_body_behind() {
-            return Side::Outer;
-        }
-        let is_behind = self.winding(1, &counts).is_none_or(|back| back >= 1);
+        let is_behind = if self.mesh.are_steps_of_one() {
+            front >= 0
+        } else {
+            self.winding(1, &counts).is_none_or(|back| back >= 1)
+        };
         match (front, is_behind || front >= 1 && self.have_ties()) {
             (1.., true) => Side::Inner,
             (_, true) => Side::Outer,
