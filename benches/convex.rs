@@ -1,4 +1,5 @@
-//! Time per contact of a triangle and a convex shape: `cargo bench --features bench --bench convex`.
+//! Time per contact of a triangle and a convex shape: `cargo bench --features bench --bench
+//! convex`.
 //!
 //! *near* is apart within the margin, *far* beyond it, *crossing* where the core of the shape
 //! crosses the triangle.

@@ -1,5 +1,5 @@
-//! The contact of a triangle and a convex shape against brute force, with the checks of the property
-//! tests.
+//! The contact of a triangle and a convex shape against brute force, with the checks of the
+//! property tests.
 //!
 //! With cargo-fuzz and a nightly compiler: `cargo +nightly fuzz run convex`.
 

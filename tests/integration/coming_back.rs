@@ -88,8 +88,8 @@ fn no_prediction_distance_is_too_large() {
     });
 }
 
-/// Would catch boxes that rounding makes too small, in the first query of a pair and later. Each mesh is far
-/// from its origin and the prediction distance away, turned or not.
+/// Would catch boxes that rounding makes too small, in the first query of a pair and later. Each
+/// mesh is far from its origin and the prediction distance away, turned or not.
 #[test]
 fn meshes_far_from_their_origin_are_seen_in_the_first_query() {
     let (mut random, mut found) = (Rand32::new(1), [0; 4]);

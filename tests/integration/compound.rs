@@ -130,8 +130,8 @@ fn each_of_many_parts_is_where_it_is() {
     }
 }
 
-/// A compound whose parts are far out, and a long mesh on a half-space, turn a little at a time. Would
-/// catch contacts lost as the ball that is to hold what moves is too small.
+/// A compound whose parts are far out, and a long mesh on a half-space, turn a little at a time.
+/// Would catch contacts lost as the ball that is to hold what moves is too small.
 #[test]
 fn far_parts_keep_their_contacts_while_a_body_turns() {
     let floor = shape(&mesh::floor(40.0, 160));
@@ -169,7 +169,8 @@ fn far_parts_keep_their_contacts_while_a_body_turns() {
     assert!(touched > 100, "{touched}");
 }
 
-/// Cubes look the same after quarter turns. Would catch normals of parts with different axes that are compared.
+/// Cubes look the same after quarter turns. Would catch normals of parts with different axes that
+/// are compared.
 #[test]
 fn parts_touch_a_mesh_alike_whichever_axes_they_have() {
     let table = |turns: [Quat; 2]| {

@@ -57,8 +57,8 @@ fn worlds() -> Vec<(String, PhysicsWorld)> {
     worlds
 }
 
-/// Would catch uninitialised memory, an order by addresses or hashes, and state left for the next world. Would
-/// also catch contacts that depend on memory of the steps before.
+/// Would catch uninitialised memory, an order by addresses or hashes, and state left for the next
+/// world. Would also catch contacts that depend on memory of the steps before.
 #[test]
 fn a_world_runs_the_same_again_whatever_it_forgets() {
     let periods = [None, Some(1), Some(7)].map(|period| (period, worlds()));

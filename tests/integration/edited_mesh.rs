@@ -126,8 +126,8 @@ impl Overlap {
     }
 }
 
-/// Lets Rapier meet the pair, moves one vertex inwards, and checks the next step. Would catch an old tree or old
-/// contacts, whether the collider edits its mesh or gets another shape.
+/// Lets Rapier meet the pair, moves one vertex inwards, and checks the next step. Would catch an
+/// old tree or old contacts, whether the collider edits its mesh or gets another shape.
 #[test]
 fn a_vertex_that_moved_between_steps_is_seen() {
     for is_in_place in [true, false] {

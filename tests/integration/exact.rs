@@ -10,7 +10,8 @@ const PREDICTIONS: [Real; 3] = [0.001, 0.002, 0.02];
 /// Depths of poses, as shares of the size: just apart, touching, a step's fall, and deep.
 const DEPTHS: [Real; 4] = [-0.0005, 0.0005, 0.01, 0.2];
 
-/// Panics unless all contacts of two meshes are right, at every size, depth and prediction distance.
+/// Panics unless all contacts of two meshes are right, at every size, depth and prediction
+/// distance.
 fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
     let dispatcher = per_triangle();
     let mut random = Rand32::new(seed);
@@ -26,8 +27,8 @@ fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
     check_all_right(errors, least_contacts);
 }
 
-/// Would catch contacts missed, invented, or with wrong depths, as stock has them at small triangles. Would
-/// also catch contacts that depend on the winding.
+/// Would catch contacts missed, invented, or with wrong depths, as stock has them at small
+/// triangles. Would also catch contacts that depend on the winding.
 #[test]
 fn contacts_are_those_of_brute_force_at_every_size() {
     let head = mesh::monkey_head();
@@ -82,8 +83,8 @@ fn distant_meshes_touch_as_the_truth_says() {
     check_all_right(errors, 200);
 }
 
-/// A corner of a box above the middle of a triangle. Would catch features of the two shapes that are
-/// taken for each other: impulses would be handed to other points as bodies slide.
+/// A corner of a box above the middle of a triangle. Would catch features of the two shapes that
+/// are taken for each other: impulses would be handed to other points as bodies slide.
 #[test]
 fn features_are_those_of_their_shape() {
     let [floor, cube] = [mesh::floor(4.0, 1), mesh::cuboid(Vec3::splat(0.5), 1)].map(|m| shape(&m));
@@ -101,8 +102,9 @@ fn features_are_those_of_their_shape() {
     }
 }
 
-/// Two bars of 12 to 3072 triangles that cross edge over edge, apart by less than what triangles are searched in. Would catch edges that
-/// are left out as passing by, though nothing else is as near.
+/// Two bars of 12 to 3072 triangles that cross edge over edge, apart by less than what triangles
+/// are searched in. Would catch edges that are left out as passing by, though nothing else is as
+/// near.
 #[test]
 fn the_nearest_edges_of_crossed_bars_have_a_contact() {
     let mut random = Rand32::new(2);
@@ -132,8 +134,9 @@ fn the_nearest_edges_of_crossed_bars_have_a_contact() {
     }
 }
 
-/// A nut in the middle of the play on its bolt, and a prediction distance of up to two thirds of the pitch. Would catch triangles that
-/// seem to have passed each other, as normals of far contacts lead into both threads. They pushed nuts by a flank.
+/// A nut in the middle of the play on its bolt, and a prediction distance of up to two thirds of
+/// the pitch. Would catch triangles that seem to have passed each other, as normals of far contacts
+/// lead into both threads. They pushed nuts by a flank.
 #[test]
 fn solids_that_are_apart_have_no_nearer_contacts() {
     let [bolt, nut] = [Thread::BOLT.bolt(), Thread::NUT.nut(1.2)].map(|mesh| shape(&mesh));
@@ -157,7 +160,8 @@ fn solids_that_are_apart_have_no_nearer_contacts() {
     assert!(found > 1000, "{found}");
 }
 
-/// A roof of two slopes, with triangles that get smaller towards the middle of its ridge along the x axis.
+/// A roof of two slopes, with triangles that get smaller towards the middle of its ridge along the
+/// x axis.
 fn roof(length: Real, cells: i32) -> SharedShape {
     let place = |i: i32| length * i as Real * i.abs() as Real / (cells * cells) as Real;
     let row = |i: i32| (-cells..=cells).map(move |j| [place(i), -place(j.abs()), place(j)]);
@@ -169,8 +173,8 @@ fn roof(length: Real, cells: i32) -> SharedShape {
     SharedShape::trimesh(vertices, rows.flat_map(cell).collect()).unwrap()
 }
 
-/// Triangles at the nearest points are much smaller than their distance. Would catch triangles that a descent
-/// rejects as beside each other, though nothing else is as near.
+/// Triangles at the nearest points are much smaller than their distance. Would catch triangles that
+/// a descent rejects as beside each other, though nothing else is as near.
 #[test]
 fn the_nearest_ridges_of_fine_roofs_have_a_contact() {
     let mut random = Rand32::new(3);
@@ -205,8 +209,9 @@ fn prism(outline: &[[Real; 2]], triangles: &[[u32; 3]], half_length: Real) -> Sh
     SharedShape::trimesh(vertices, ends.chain(sides).collect()).unwrap()
 }
 
-/// A tail in an undercut slot, and in a straight one. Triangles of the tail cross the floor and a wall of the slot. Would catch
-/// acute corners that seem to lead into the solid, and contacts with the floor that count for the wall.
+/// A tail in an undercut slot, and in a straight one. Triangles of the tail cross the floor and a
+/// wall of the slot. Would catch acute corners that seem to lead into the solid, and contacts with
+/// the floor that count for the wall.
 #[test]
 fn overlaps_with_the_walls_of_a_slot_have_contacts() {
     const PLAY: Real = 0.01;
@@ -262,8 +267,8 @@ fn overlaps_with_the_walls_of_a_slot_have_contacts() {
     assert!(lost <= 1, "{lost} of {count}");
 }
 
-/// An edge of a door leaf is in an edge of its jamb, farther sideways than into it. Would catch contacts that push the leaf aside:
-/// a fast leaf went through.
+/// An edge of a door leaf is in an edge of its jamb, farther sideways than into it. Would catch
+/// contacts that push the leaf aside: a fast leaf went through.
 #[test]
 fn edges_in_edges_push_the_shorter_way() {
     let (leaf, jamb) = (Vec3::new(0.5, 1.0, 0.04), Vec3::new(0.1, 1.1, 0.1));

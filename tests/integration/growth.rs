@@ -151,8 +151,8 @@ fn seconds(
     })
 }
 
-/// Returns true if sixteen times the triangles take more than n^1.5, 64 times as long. With n log n the factor
-/// is 22, and caches add to it.
+/// Returns true if sixteen times the triangles take more than n^1.5, 64 times as long. With n log n
+/// the factor is 22, and caches add to it.
 fn is_slow(few: f64, many: f64) -> bool {
     many > 0.01 && many > 64.0 * few.max(1e-4)
 }
@@ -215,9 +215,9 @@ fn time_of_push_outs_grows_with_the_parts() {
 /// A step of a part that has fallen a decimetre, along each axis, in units.
 const FALL: f32 = 3e-3;
 
-/// Prints milliseconds for two balls of 2 cm, which are within Rapier's default prediction distance with all
-/// their triangles. Stock gets only the smallest ones, as its time is quadratic. Would catch all triangles as
-/// candidates: at first, or after a step, as slack.
+/// Prints milliseconds for two balls of 2 cm, which are within Rapier's default prediction distance
+/// with all their triangles. Stock gets only the smallest ones, as its time is quadratic. Would
+/// catch all triangles as candidates: at first, or after a step, as slack.
 #[test]
 #[ignore = "takes seconds in release, and half a minute in debug"]
 fn parts_of_centimetres_do_not_cost_the_square_of_their_triangles() {
@@ -243,8 +243,8 @@ fn parts_of_centimetres_do_not_cost_the_square_of_their_triangles() {
     }
 }
 
-/// Prints microseconds of casts and distances. A box meets as many triangles at once as are under it. Would catch one
-/// exact test for each triangle.
+/// Prints microseconds of casts and distances. A box meets as many triangles at once as are under
+/// it. Would catch one exact test for each triangle.
 #[test]
 #[ignore = "times queries of microseconds"]
 fn flat_shapes_over_a_fine_floor_take_little_longer() {

@@ -78,8 +78,8 @@ fn bodies_in_no_solid_are_not_pushed_out() {
     assert_eq!(query.fresh(&dispatcher).len(), 1);
 }
 
-/// A walk in and out of a solid, of bodies that are small beside their steps and beside what a descent
-/// looks ahead. Would catch a body remembered as inside or outside.
+/// A walk in and out of a solid, of bodies that are small beside their steps and beside what a
+/// descent looks ahead. Would catch a body remembered as inside or outside.
 #[test]
 fn push_out_does_not_depend_on_earlier_poses() {
     let slab = shape(&mesh::cuboid(HALF, 4));
@@ -110,8 +110,8 @@ fn push_out_does_not_depend_on_earlier_poses() {
     assert!(inside > 300 && none > 100 && reused > 100, "{inside} {none} {reused}");
 }
 
-/// Would catch a body that starts in a declared solid and falls through, is thrown out, or stops at the
-/// surface.
+/// Would catch a body that starts in a declared solid and falls through, is thrown out, or stops at
+/// the surface.
 #[test]
 fn a_body_that_starts_in_a_solid_comes_out_slowly() {
     let ground = Vec3::new(5.0, 1.0, 5.0);

@@ -2,8 +2,8 @@ use crate::heightfield::terrain::{Terrain, rolling};
 use crate::prelude::*;
 use rapier3d::parry::query::distance as shape_distance;
 
-/// Would catch a direction left out because a neighbour is nearer, and near contacts that are kept. Soft CCD needs
-/// each direction of the larger shape's local minima beyond a tenth of the radius.
+/// Would catch a direction left out because a neighbour is nearer, and near contacts that are kept.
+/// Soft CCD needs each direction of the larger shape's local minima beyond a tenth of the radius.
 #[test]
 fn far_contacts_have_every_direction() {
     let [head, torus] = [mesh::monkey_head_with(3), mesh::torus(0.7, 0.3, 8, 5)].map(|m| shape(&m));
@@ -42,7 +42,8 @@ fn far_contacts_have_every_direction() {
     assert!(near[0] < near[1], "{near:?} near");
 }
 
-/// Returns true if no triangle of mesh 1 at a contact's point has a point nearer to the point of mesh 2.
+/// Returns true if no triangle of mesh 1 at a contact's point has a point nearer to the point of
+/// mesh 2.
 fn is_minimum(mesh1: &TriMesh, pos12: &Pose, manifold: &Manifold) -> bool {
     let point = manifold.find_deepest_contact().expect("a point");
     let point2 = pos12 * point.local_p2;
@@ -77,8 +78,8 @@ fn fine_meshes_have_a_few_far_contacts_with_fields() {
     has_few_far_contacts([&field, &torus], &mesh, poses);
 }
 
-/// Would catch lost far contacts, contacts nearer than the shapes, and too many points. Parry measures the
-/// distance of `mesh1`, which is shape 1 as a mesh.
+/// Would catch lost far contacts, contacts nearer than the shapes, and too many points. Parry
+/// measures the distance of `mesh1`, which is shape 1 as a mesh.
 fn has_few_far_contacts(
     [shape1, shape2]: [&dyn Shape; 2],
     mesh1: &dyn Shape,
@@ -109,8 +110,8 @@ fn has_few_far_contacts(
     assert!(ratios.len() > 120 && median < 1.01 && most < 1.1, "{ratios:?}");
 }
 
-/// A body that lies on a face, not quite flat, is held up at its other corners as well: it rocks onto
-/// them. Would catch corners that are left out as the lower ones are nearer.
+/// A body that lies on a face, not quite flat, is held up at its other corners as well: it rocks
+/// onto them. Would catch corners that are left out as the lower ones are nearer.
 #[test]
 fn corners_above_a_face_count_though_others_are_nearer() {
     let [floor, cube] = [mesh::floor(4.0, 1), mesh::cuboid(Vec3::splat(0.5), 1)].map(|m| shape(&m));

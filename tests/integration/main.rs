@@ -1,8 +1,9 @@
 //! Tests of the dispatcher inside Rapier and Parry, by stock Parry, by brute force in f64, and by
 //! new dispatchers.
 //!
-//! `properties` and `coming_back` hold for every kind of pair: no memory in the result, no allocation,
-//! no contact at poses that are not finite. `who_answers` tests who computes which query.
+//! `properties` and `coming_back` hold for every kind of pair: no memory in the result, no
+//! allocation, no contact at poses that are not finite. `who_answers` tests who computes which
+//! query.
 //!
 //! | a mesh and | contacts are right | after any history | in worlds |
 //! |---|---|---|---|

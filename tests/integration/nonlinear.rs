@@ -163,7 +163,8 @@ fn casts_from_contact_are_like_stock() {
     assert!(count > 100 && both > 50 && 10 * same >= 9 * count, "{same} of {count}, {both} hit");
 }
 
-/// Balls that spin pass each other at a small distance. Would catch steps that a spin shortens, and that are used up.
+/// Balls that spin pass each other at a small distance. Would catch steps that a spin shortens, and
+/// that are used up.
 #[test]
 fn balls_that_spin_pass_each_other() {
     let dispatcher = SbbkDispatcher::default();

@@ -56,8 +56,8 @@ fn assert_stand_for(
             assert!(every.iter().any(|m| is_same(&m)), "{what}: a point of no contact");
         }
     }
-    // Each contact is in a patch that is as deep and has its direction; or far over one that touches, and
-    // leans little from it.
+    // Each contact is in a patch that is as deep and has its direction; or far over one that
+    // touches, and leans little from it.
     for contact in every {
         let is_over = |patch: &&Manifold| {
             distance(contact) > OVER * prediction
@@ -155,8 +155,8 @@ fn table() -> Mesh {
     Mesh::merged("table", &legs.chain([top]).collect::<Vec<_>>())
 }
 
-/// Cubes of 5 cm that touch, at Rapier's default prediction distance. Would catch a point for each triangle
-/// within it.
+/// Cubes of 5 cm that touch, at Rapier's default prediction distance. Would catch a point for each
+/// triangle within it.
 #[test]
 fn small_bodies_have_few_points_beyond_what_touches() {
     const PREDICTION: Real = 0.02;
@@ -181,8 +181,8 @@ fn small_bodies_have_few_points_beyond_what_touches() {
     assert!(mean < 16.0, "{mean} points a pair");
 }
 
-/// Cubes of 5 cm deep in each other, at Rapier's default prediction distance. Would catch contacts from
-/// within, which hold bodies in each other.
+/// Cubes of 5 cm deep in each other, at Rapier's default prediction distance. Would catch contacts
+/// from within, which hold bodies in each other.
 #[test]
 fn far_contacts_are_outside_of_solids() {
     const HALF: Real = 0.025;
@@ -293,8 +293,8 @@ fn patches_and_points_keep_their_data() {
     }
 }
 
-/// A cube in a groove whose sides are so flat that their normals are much alike. Would catch a patch
-/// that gets the data of the other one.
+/// A cube in a groove whose sides are so flat that their normals are much alike. Would catch a
+/// patch that gets the data of the other one.
 #[test]
 fn each_patch_keeps_the_data_of_the_one_most_like_it() {
     let bent = |v: Vec3| v + Vec3::Y * 0.15 * v.x.abs();
@@ -321,8 +321,9 @@ fn each_patch_keeps_the_data_of_the_one_most_like_it() {
     }
 }
 
-/// A table whose legs are alike, as shape 1, that slides to other triangles of a floor. Would catch a leg
-/// that gets the data of another one, as all have their points at the same places in their frames.
+/// A table whose legs are alike, as shape 1, that slides to other triangles of a floor. Would catch
+/// a leg that gets the data of another one, as all have their points at the same places in their
+/// frames.
 #[test]
 fn each_part_of_a_compound_keeps_its_data() {
     let leg = SharedShape::cuboid(0.1, 0.5, 0.1);
@@ -354,8 +355,8 @@ fn each_part_of_a_compound_keeps_its_data() {
     assert!(handed_on > 3000, "{handed_on}");
 }
 
-/// Turns as files have them are of unit length to four digits, and cones then leave normals that are
-/// not. Would catch patches without end.
+/// Turns as files have them are of unit length to four digits, and cones then leave normals that
+/// are not. Would catch patches without end.
 #[test]
 fn normals_of_any_length_make_patches() {
     let head = mesh::monkey_head();
@@ -370,8 +371,9 @@ fn normals_of_any_length_make_patches() {
     }
 }
 
-/// Bodies that stand on a flat mesh. The caps of Parry's meshes are fans around one vertex. Would catch points of contacts with a
-/// common deepest point: a body would stand on one side of its base.
+/// Bodies that stand on a flat mesh. The caps of Parry's meshes are fans around one vertex. Would
+/// catch points of contacts with a common deepest point: a body would stand on one side of its
+/// base.
 #[test]
 fn patches_reach_as_far_around_a_body_as_all_contacts() {
     let corners = (0..9).flat_map(|i| {
@@ -448,8 +450,8 @@ fn lowest(shape: &SharedShape, turn: Quat) -> Real {
     heights.fold(Real::INFINITY, Real::min)
 }
 
-/// Small bodies over flat grounds, with predictions of up to twenty radii, as soft CCD has them. Would catch patches without
-/// the nearest contact: a body would pass through a floor.
+/// Small bodies over flat grounds, with predictions of up to twenty radii, as soft CCD has them.
+/// Would catch patches without the nearest contact: a body would pass through a floor.
 #[test]
 fn the_nearest_contact_is_kept_at_any_prediction() {
     let bodies = [

@@ -9,8 +9,9 @@ const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
 /// Lengths of a step in units and radians, from far below any slack to beyond it.
 const STRIDES: [Real; 5] = [0.0, 1e-5, 1e-3, 1e-2, 3e-2];
 
-/// Moves a pair at random, with jumps, ways back, lost workspaces, other dispatchers, poses far away or NaN, and
-/// a host that changes the list. A dispatcher without memory must give the same bits.
+/// Moves a pair at random, with jumps, ways back, lost workspaces, other dispatchers, poses far
+/// away or NaN, and a host that changes the list. A dispatcher without memory must give the same
+/// bits.
 fn walk(
     question: &mut Question,
     kind: &Kind,
@@ -48,8 +49,8 @@ fn walk(
     contacts
 }
 
-/// Removes, copies, reorders or empties manifolds, as a host may. Returns how a pair then moves: at an equal pose, a
-/// list of the same length counts as unchanged.
+/// Removes, copies, reorders or empties manifolds, as a host may. Returns how a pair then moves: at
+/// an equal pose, a list of the same length counts as unchanged.
 fn meddle(manifolds: &mut Vec<Manifold>, pick: usize, random: &mut Rand32) -> Pose {
     match pick {
         0 => _ = manifolds.pop(),
@@ -64,8 +65,9 @@ fn meddle(manifolds: &mut Vec<Manifold>, pick: usize, random: &mut Rand32) -> Po
     if may_rest { Pose::IDENTITY } else { nudge(random, 1e-5) }
 }
 
-/// Would catch candidates kept too long, an old pose taken for the present one, and bounds of distance that are too
-/// high. Would also catch manifolds that come twice, out of order, or of another subshape.
+/// Would catch candidates kept too long, an old pose taken for the present one, and bounds of
+/// distance that are too high. Would also catch manifolds that come twice, out of order, or of
+/// another subshape.
 #[test]
 fn the_answer_does_not_depend_on_the_motion_before() {
     let pairs = mesh_pairs();
@@ -88,8 +90,8 @@ fn the_answer_does_not_depend_on_the_motion_before() {
     }
 }
 
-/// Soft bodies need each contact's triangle. Would catch patches or surfaces of a mesh that may deform, wrong
-/// cones, and contacts that the flag alone changes.
+/// Soft bodies need each contact's triangle. Would catch patches or surfaces of a mesh that may
+/// deform, wrong cones, and contacts that the flag alone changes.
 #[test]
 fn meshes_that_may_deform_have_every_contact_of_their_triangles() {
     let all = TriMeshFlags::all() - TriMeshFlags::DEFORMABLE;
@@ -149,8 +151,8 @@ fn poses_that_are_not_finite_have_no_contacts() {
     }
 }
 
-/// Would catch lost data of a host where a dispatcher takes over a running world. Rapier takes the workspace away if a
-/// shape may have changed. Then manifolds must not stay.
+/// Would catch lost data of a host where a dispatcher takes over a running world. Rapier takes the
+/// workspace away if a shape may have changed. Then manifolds must not stay.
 #[test]
 fn manifolds_keep_their_data_with_a_foreign_workspace_but_not_without_one() {
     let dispatcher = per_triangle();
@@ -248,7 +250,8 @@ fn steady_contact_allocates_nothing() {
     }
 }
 
-/// Would catch memory of a thread that many light pairs make it drop between two queries of a heavy one.
+/// Would catch memory of a thread that many light pairs make it drop between two queries of a heavy
+/// one.
 #[test]
 #[cfg_attr(feature = "parallel", ignore = "heavy pairs are split, and the pool allocates")]
 fn light_pairs_make_no_heavy_pair_allocate() {

@@ -11,7 +11,8 @@ pub struct Proximity<'a> {
 }
 
 impl Proximity<'_> {
-    /// Panics unless distance, intersection, closest points and contact are true. The last two look up to `margin`.
+    /// Panics unless distance, intersection, closest points and contact are true. The last two look
+    /// up to `margin`.
     pub fn check(&self, dispatcher: &impl QueryDispatcher, margin: Real, says: &str) {
         let says = format!("{says}: {}", self.least);
         self.check_distance(dispatcher, &says);
@@ -93,7 +94,8 @@ impl<'a> LinearCast<'a> {
         if is_flipped { -(pose.rotation.inverse() * self.velocity) } else { self.velocity }
     }
 
-    /// Panics unless `hit` is the first time at which nothing is left to the target distance, by brute force.
+    /// Panics unless `hit` is the first time at which nothing is left to the target distance, by
+    /// brute force.
     pub fn check(
         &self,
         hit: Option<ShapeCastHit>,

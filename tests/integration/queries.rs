@@ -121,8 +121,9 @@ fn casts_stop_at_the_first_impact() {
     assert!((10..40).contains(&hits), "{hits} hits");
 }
 
-/// Boxes slide along a wall, at the target distance or a little nearer, up to another wall. Would catch casts
-/// that stop at the edges within the first wall: character controllers would climb no stairs.
+/// Boxes slide along a wall, at the target distance or a little nearer, up to another wall. Would
+/// catch casts that stop at the edges within the first wall: character controllers would climb no
+/// stairs.
 #[test]
 fn casts_slide_along_a_wall_up_to_the_next_one() {
     const TARGET: f32 = 0.014;
@@ -165,8 +166,9 @@ fn casts_slide_along_a_wall_up_to_the_next_one() {
     }
 }
 
-/// Bodies start within the target distance of a jagged ground, and cross the ground later. Would catch casts that drop a triangle
-/// for good since another one is nearer at first: characters would walk into the ground.
+/// Bodies start within the target distance of a jagged ground, and cross the ground later. Would
+/// catch casts that drop a triangle for good since another one is nearer at first: characters would
+/// walk into the ground.
 #[test]
 fn casts_that_start_within_the_target_distance_pass_nothing() {
     let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
@@ -211,8 +213,8 @@ fn casts_that_start_within_the_target_distance_pass_nothing() {
     assert!(crossings > 400, "{crossings} cross");
 }
 
-/// A cast that starts beyond the target distance ends there, whether or not it would stop at a penetration. Would catch an impact
-/// that each of two triangles at a gap leaves to the other one.
+/// A cast that starts beyond the target distance ends there, whether or not it would stop at a
+/// penetration. Would catch an impact that each of two triangles at a gap leaves to the other one.
 #[test]
 fn casts_from_afar_end_at_the_target_distance_over_gaps() {
     let dispatcher = SbbkDispatcher::default();
@@ -314,8 +316,8 @@ fn nonlinear_casts_stop_at_the_first_impact() {
 }
 
 /// A vertex moves within the boxes of all its triangles, forth and back. Nothing else of the mesh
-/// changes. Would catch meshes that are known by boxes or by samples. Would catch answers from the tree of the
-/// other state, and sensors that meet old triangles.
+/// changes. Would catch meshes that are known by boxes or by samples. Would catch answers from the
+/// tree of the other state, and sensors that meet old triangles.
 #[test]
 fn edits_forth_and_back_are_seen() {
     let dispatcher = SbbkDispatcher::default();
@@ -407,7 +409,8 @@ fn non_finite_input_has_no_result() {
     }
 }
 
-/// Would catch a query that builds two trees at once, for more than 2 ms, or that never builds the second one.
+/// Would catch a query that builds two trees at once, for more than 2 ms, or that never builds the
+/// second one.
 #[test]
 fn queries_build_trees_within_the_budget() {
     let dispatcher = SbbkDispatcher::default();

@@ -33,8 +33,8 @@ fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
 }
 
 /// Would catch 2000 trees, or 2000 builds, for a pile restored from a snapshot, where each collider
-/// has its own copy of the mesh. Identities by address would cause them. Clones of a dispatcher would, too, if each
-/// built trees of its own.
+/// has its own copy of the mesh. Identities by address would cause them. Clones of a dispatcher
+/// would, too, if each built trees of its own.
 #[test]
 fn two_thousand_copies_share_one_tree() {
     let dispatcher = SbbkDispatcher::default();
@@ -50,8 +50,8 @@ fn two_thousand_copies_share_one_tree() {
     assert!(bytes > 0 && dispatcher.stats().tree_bytes == bytes);
 }
 
-/// Would catch a tree used for another size of the same mesh, and a second one of a mesh whose contact
-/// normals are constrained.
+/// Would catch a tree used for another size of the same mesh, and a second one of a mesh whose
+/// contact normals are constrained.
 #[test]
 fn another_scale_is_another_mesh_and_another_flag_is_none() {
     let dispatcher = SbbkDispatcher::default();

@@ -108,7 +108,8 @@ impl<M, C> Pair<M, C> {
 /// Both sets of contacts, the default one first.
 pub const SETS: [ContactSet; 2] = [ContactSet::Surfaces, ContactSet::Triangles];
 
-/// Returns a dispatcher that counts its queries. Otherwise its configuration differs from the default by a change.
+/// Returns a dispatcher that counts its queries. Otherwise its configuration differs from the
+/// default by a change.
 pub fn with(change: impl FnOnce(&mut SbbkConfig)) -> SbbkDispatcher {
     let mut config = SbbkConfig::default().with_count_queries(true);
     change(&mut config);

@@ -64,8 +64,9 @@ fn a_cube_sunk_halfway_leaves_by_the_nearer_side() {
     }
 }
 
-/// Boxes that overlap by more than a row of their triangles, clean and dirty. Would catch contacts of the sides, along
-/// which the boxes are pushed aside or spun. Would catch soups whose contours count as open.
+/// Boxes that overlap by more than a row of their triangles, clean and dirty. Would catch contacts
+/// of the sides, along which the boxes are pushed aside or spun. Would catch soups whose contours
+/// count as open.
 #[test]
 fn boxes_deep_in_each_other_part_the_way_they_came() {
     let soup = |mesh: &Mesh| mesh::unwelded(mesh, 2e-5, 7);
@@ -114,8 +115,8 @@ fn count_aside(dirt: Dirt<'_>) -> [usize; 2] {
     [aside, count]
 }
 
-/// Would catch faces that have passed each other, and no longer cross, taken for two that are apart:
-/// the cube would be held inside.
+/// Would catch faces that have passed each other, and no longer cross, taken for two that are
+/// apart: the cube would be held inside.
 #[test]
 fn faces_that_have_passed_each_other_part_the_way_they_came() {
     let (floor, small) = (cube(), shape(&mesh::cuboid(Vec3::splat(0.2), 1)));
@@ -190,8 +191,8 @@ fn a_cube_is_pushed_to_its_own_side_of_a_sheet() {
     }
 }
 
-/// Would catch a mesh whose normals point inwards and that pulls bodies in: two of them part along the
-/// line of their middles.
+/// Would catch a mesh whose normals point inwards and that pulls bodies in: two of them part along
+/// the line of their middles.
 #[test]
 fn inside_out_meshes_push_each_other_apart() {
     let inside = shape(&turned_inside_out(mesh::ball(0.8, 6)));
@@ -208,8 +209,8 @@ fn inside_out_meshes_push_each_other_apart() {
     assert!(count > 50, "{count}");
 }
 
-/// Would catch a side that the winding of a closed mesh decides, rather than where its body is. One of two contacts
-/// that are nearly as deep may be deeper, as the corners have another order.
+/// Would catch a side that the winding of a closed mesh decides, rather than where its body is. One
+/// of two contacts that are nearly as deep may be deeper, as the corners have another order.
 #[test]
 fn inside_out_meshes_have_the_contacts_of_their_bodies() {
     let bodies = [mesh::ball(0.8, 6), mesh::cuboid(Vec3::splat(0.6), 2), mesh::monkey_head()];
@@ -287,8 +288,8 @@ fn surfaces_have_some_of_the_contacts_of_triangles_and_normals_of_length_one() {
     assert!(some > 500 && 3 * some < 2 * all, "{some} of {all}");
 }
 
-/// Cubes edge over edge, alone and with blocks beside them that nearly touch. Would catch edges that lack
-/// a contact though nothing is nearer. Would catch edges that hold each other, too.
+/// Cubes edge over edge, alone and with blocks beside them that nearly touch. Would catch edges
+/// that lack a contact though nothing is nearer. Would catch edges that hold each other, too.
 #[test]
 fn edges_pass_each_other_if_something_is_nearer() {
     let edge_up = Quat::from_rotation_x(FRAC_PI_4);
@@ -317,8 +318,8 @@ fn edges_pass_each_other_if_something_is_nearer() {
     }
 }
 
-/// A cube that leans over a floor of small triangles. Would catch its edges held up by those within the
-/// floor, along normals that are neither the floor's nor the cube's.
+/// A cube that leans over a floor of small triangles. Would catch its edges held up by those within
+/// the floor, along normals that are neither the floor's nor the cube's.
 #[test]
 fn edges_within_a_flat_side_hold_no_edges() {
     let (cube, floor) = (cube(), shape(&mesh::floor(4.0, 40)));
@@ -342,8 +343,8 @@ fn edges_within_a_flat_side_hold_no_edges() {
     assert!(count > 500 && odd < count / 50, "{odd} of {count}");
 }
 
-/// Meshes that cross have a contact. Would catch bodies that fall through each other where no contact
-/// leads out.
+/// Meshes that cross have a contact. Would catch bodies that fall through each other where no
+/// contact leads out.
 #[test]
 fn crossing_meshes_have_a_contact() {
     let mut count = 0;
@@ -379,8 +380,8 @@ fn either_mesh_may_come_first() {
     assert!(count > 500);
 }
 
-/// Would catch numbers that have a unit: everything times a power of two, the prediction distance as
-/// well, has the contacts of the same triangles.
+/// Would catch numbers that have a unit: everything times a power of two, the prediction distance
+/// as well, has the contacts of the same triangles.
 #[test]
 fn contacts_do_not_depend_on_the_unit_of_length() {
     let mut count = 0;

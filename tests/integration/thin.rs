@@ -1,4 +1,5 @@
-//! Thin and fast bodies: on sheets, at the distances of soft CCD, and beyond the reach of candidates.
+//! Thin and fast bodies: on sheets, at the distances of soft CCD, and beyond the reach of
+//! candidates.
 
 use crate::prelude::*;
 
@@ -14,8 +15,9 @@ fn floor() -> TriMesh {
     shape(&mesh::floor(10.0, 20))
 }
 
-/// A plate whose middle is a little behind the sheet may come from either side, so the contacts of the triangles hold it. Would
-/// catch a plate that is pushed through. Would also catch plates at rest, sunk by a millimetre, with contacts to both sides.
+/// A plate whose middle is a little behind the sheet may come from either side, so the contacts of
+/// the triangles hold it. Would catch a plate that is pushed through. Would also catch plates at
+/// rest, sunk by a millimetre, with contacts to both sides.
 #[test]
 fn a_plate_a_little_behind_a_sheet_is_held() {
     let floor = floor();
@@ -84,8 +86,9 @@ fn fast_plates_do_not_pass_a_floor() {
     assert!(passed <= 5, "{passed} of 64 passed");
 }
 
-/// A cradle of fine triangles rises under a bar of fine triangles. Its sides touch the bar first. Would catch a bottom without contacts.
-/// Rapier keeps contacts of the sides for five centimetres, so the bar passed through the bottom.
+/// A cradle of fine triangles rises under a bar of fine triangles. Its sides touch the bar first.
+/// Would catch a bottom without contacts. Rapier keeps contacts of the sides for five centimetres,
+/// so the bar passed through the bottom.
 #[test]
 fn a_cradle_that_touches_a_bar_at_its_sides_lifts_the_bar() {
     const WIDTH: Real = 0.02;

@@ -29,7 +29,8 @@ fn torus(tube: u32) -> Mesh {
     mesh::torus(1.0, 0.4, 3 * tube, tube)
 }
 
-/// Would catch parts in another order, lost candidates, and sums that depend on the first thread to ask.
+/// Would catch parts in another order, lost candidates, and sums that depend on the first thread to
+/// ask.
 #[test]
 fn heavy_pairs_have_the_same_bits_on_any_number_of_threads() {
     let on_top = Pose::from_parts(Vec3::new(0.01, 0.79, 0.02), Quat::from_rotation_y(0.2));

@@ -18,7 +18,8 @@ pub fn normalized(pose: &Pose3) -> DPose3 {
     DPose3::from_parts(pose.translation.as_dvec3(), pose.rotation.as_dquat().normalize())
 }
 
-/// The errors of a fresh answer about two meshes. Panics if a contact is beyond the prediction distance.
+/// The errors of a fresh answer about two meshes. Panics if a contact is beyond the prediction
+/// distance.
 pub fn errors_of<M, C>(query: &Question, found: &[ContactManifold<M, C>]) -> Errors {
     let prediction = query.prediction;
     assert!(found.iter().all(|manifold| distance(manifold) <= prediction), "beyond {prediction}");

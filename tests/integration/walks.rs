@@ -11,8 +11,8 @@ fn as_mesh(shape: &SharedShape) -> &TriMesh {
     shape.as_trimesh().expect("the shape is a mesh")
 }
 
-/// Would catch pairs lost or in another order, another normal cone, meshes mixed up, and a surface that is known with
-/// the tree only.
+/// Would catch pairs lost or in another order, another normal cone, meshes mixed up, and a surface
+/// that is known with the tree only.
 #[test]
 fn contacts_without_trees_are_those_with_trees() {
     let flags = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
@@ -43,8 +43,9 @@ fn contacts_without_trees_are_those_with_trees() {
     assert!(count > 2000, "{count} contacts");
 }
 
-/// A ring of 9600 triangles drifts in a room of 12, both prepared, at a gap of twice the prediction distance. Would catch descents of all
-/// of the ring, as the leaf of four walls has the room in its box.
+/// A ring of 9600 triangles drifts in a room of 12, both prepared, at a gap of twice the prediction
+/// distance. Would catch descents of all of the ring, as the leaf of four walls has the room in its
+/// box.
 #[test]
 fn descents_in_a_room_end_at_its_walls() {
     let dispatcher = SbbkDispatcher::default();
@@ -234,7 +235,8 @@ fn large_meshes_are_solids_to_each_other() {
     assert_eq!((unaware.stats().solids, unaware.stats().trees), (1, 0));
 }
 
-/// Would catch surfaces that are looked for, which takes a hash of the mesh, before triangles touch.
+/// Would catch surfaces that are looked for, which takes a hash of the mesh, before triangles
+/// touch.
 #[test]
 fn meshes_that_touch_nothing_have_no_surface() {
     let (ball, dispatcher) = (shape(&mesh::ball(1.0, 12)), every());

@@ -1,5 +1,5 @@
-//! Plain Rapier with SBBK, beside stock Rapier and beside the right answer: a mesh box slides over a
-//! mesh floor, and mesh rings fall in a pile.
+//! Plain Rapier with SBBK, beside stock Rapier and beside the right answer: a mesh box slides over
+//! a mesh floor, and mesh rings fall in a pile.
 //!
 //! ```text
 //! cargo run --release -p rapier-integration --example quick_start
@@ -18,7 +18,8 @@ const FRICTION: f32 = 0.2;
 const STEPS: usize = 240;
 
 fn main() {
-    // The one line is `set_query_dispatcher`. Clones share everything; this one is kept for `stats`.
+    // The one line is `set_query_dispatcher`. Clones share everything; this one is kept for
+    // `stats`.
     let dispatcher = SbbkDispatcher::default();
     let sbbk = |mut world: PhysicsWorld| {
         world.narrow_phase.set_query_dispatcher(dispatcher.clone());

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize))]
 pub enum ContactSet {
-    /// Contacts of the surfaces: solids push out bodies that have sunk in, and internal edges have no
-    /// contacts.
+    /// Contacts of the surfaces: solids push out bodies that have sunk in, and internal edges have
+    /// no contacts.
     #[default]
     Surfaces,
     /// Contacts of each two triangles, as in stock Rapier. For comparison.
@@ -19,12 +19,13 @@ pub enum ContactSet {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize))]
 pub enum ContactDetail {
-    /// A manifold for each pair of touching subshapes, as in stock Rapier. Contacts of two meshes, or of a mesh and a height
-    /// field, are reduced if all are farther than a tenth of the smaller radius.
+    /// A manifold for each pair of touching subshapes, as in stock Rapier. Contacts of two meshes,
+    /// or of a mesh and a height field, are reduced if all are farther than a tenth of the smaller
+    /// radius.
     Every,
     /// Reduced contacts: a few manifolds of at most four points, which carry like all of them. They
-    /// have a deepest point, up to rounding. Subshapes name the triangles of the deepest contact. Pairs
-    /// with a ball or a deformable mesh have every contact.
+    /// have a deepest point, up to rounding. Subshapes name the triangles of the deepest contact.
+    /// Pairs with a ball or a deformable mesh have every contact.
     #[default]
     Patches,
 }
@@ -69,8 +70,8 @@ pub struct SbbkConfig {
     pub detail: ContactDetail,
     /// Pairs that SBBK handles. Default: all.
     pub kinds: Kinds,
-    /// True if a height field is the top of a solid, for meshes with [`ContactSet::Surfaces`]. False:
-    /// a sheet, such as a roof, that collides from below, too. Default: true.
+    /// True if a height field is the top of a solid, for meshes with [`ContactSet::Surfaces`].
+    /// False: a sheet, such as a roof, that collides from below, too. Default: true.
     pub solid_height_fields: bool,
     /// True if solids push out convex shapes whose centre is inside them, with
     /// [`ContactSet::Surfaces`]. Each part of a compound is pushed for itself.
@@ -83,12 +84,12 @@ pub struct SbbkConfig {
     /// mesh by a cost model. Not serialized.
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub layers: Option<LayerPlan>,
-    /// Memory, in bytes, that recently used meshes may keep for their trees and surfaces while no pair
-    /// uses them. A mesh that comes back finds its tree. Registered meshes stay in any case. Default:
-    /// 16 MiB.
+    /// Memory, in bytes, that recently used meshes may keep for their trees and surfaces while no
+    /// pair uses them. A mesh that comes back finds its tree. Registered meshes stay in any case.
+    /// Default: 16 MiB.
     pub idle_tree_bytes: usize,
-    /// True if contact queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent of
-    /// time, more with many threads. Default: false.
+    /// True if contact queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent
+    /// of time, more with many threads. Default: false.
     pub count_queries: bool,
 }
 

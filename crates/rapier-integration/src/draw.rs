@@ -1,8 +1,8 @@
 //! Lines that show contacts, patches, candidates and layers of trees, for any renderer of lines.
 //!
-//! Each function calls a closure with the ends and the colour of a line. The example `draw` hands the
-//! lines to Rapier's debug renderer. Bevy's gizmos take
-//! `gizmos.line(a, b, Color::hsla(h, s, l, a))` of `[h, s, l, a] = colour`.
+//! Each function calls a closure with the ends and the colour of a line. The example `draw` hands
+//! the lines to Rapier's debug renderer. Bevy's gizmos take `gizmos.line(a, b, Color::hsla(h, s, l,
+//! a))` of `[h, s, l, a] = colour`.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::ContactManifold;
@@ -22,8 +22,8 @@ pub const PATCH: Colour = [120.0, 1.0, 0.5, 1.0];
 /// Colours of the [`triangles`] of the two shapes.
 pub const TRIANGLES: [Colour; 2] = [[300.0, 0.8, 0.6, 1.0], [30.0, 0.9, 0.6, 1.0]];
 
-/// Draws the contact points of manifolds between shapes at these poses. Each point has a line between
-/// the shapes, and its normal.
+/// Draws the contact points of manifolds between shapes at these poses. Each point has a line
+/// between the shapes, and its normal.
 ///
 /// ```
 /// use parry3d::math::Pose;

@@ -2,8 +2,8 @@
 //!
 //! ## With a dispatcher of your own
 //!
-//! Put your dispatcher before [`SbbkDispatcher`](crate::SbbkDispatcher), which handles every pair that
-//! Parry can:
+//! Put your dispatcher before [`SbbkDispatcher`](crate::SbbkDispatcher), which handles every pair
+//! that Parry can:
 //!
 //! ```
 //! use rapier3d::parry::math::{Pose, Real, Vector};

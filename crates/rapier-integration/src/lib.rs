@@ -9,14 +9,16 @@
 //! ```
 //!
 //! Colliders stay plain triangle meshes, and nothing else in a scene changes. Two meshes get the
-//! contacts of their surfaces: stacks stand, gears turn, and solids push out bodies that have sunk in.
+//! contacts of their surfaces: stacks stand, gears turn, and solids push out bodies that have sunk
+//! in.
 //!
-//! * The [`guide`] says how to prepare meshes, what to set where a scene is difficult, and when not to
-//!   use SBBK.
+//! * The [`guide`] says how to prepare meshes, what to set where a scene is difficult, and when not
+//!   to use SBBK.
 //! * [`SbbkDispatcher::prepare_shape`] registers large meshes.
 //! * [`SbbkConfig`] selects contacts and pairs, [`SbbkDispatcher::stats`] counts them, and [`draw`]
 //!   shows them.
-//! * [`TriangleContacts`] computes the contact of two triangles, for hosts with a midphase of their own.
+//! * [`TriangleContacts`] computes the contact of two triangles, for hosts with a midphase of their
+//!   own.
 //!
 //! # Features
 //!

@@ -18,10 +18,11 @@ pub struct SbbkStats {
     pub solids: usize,
     /// Analysed meshes that count as sheets.
     pub sheets: usize,
-    /// Analysed meshes that are closed with inward normals: rooms, or meshes that are wound the wrong way.
+    /// Analysed meshes that are closed with inward normals: rooms, or meshes that are wound the
+    /// wrong way.
     pub inside_out: usize,
-    /// Contact queries of two meshes in which no contact was left, and a solid has pushed out a mesh
-    /// inside or across its surface.
+    /// Contact queries of two meshes in which no contact was left, and a solid has pushed out a
+    /// mesh inside or across its surface.
     pub push_outs: u64,
     /// Meshes that have a tree.
     pub trees: usize,

@@ -1,4 +1,5 @@
-//! Lines of contacts: where the contacts are, in the world, with parts of a compound at their places.
+//! Lines of contacts: where the contacts are, in the world, with parts of a compound at their
+//! places.
 
 use parry3d::math::{Pose, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};

@@ -28,7 +28,8 @@ impl StudyArguments {
 
     /// Runs a study, prints the verdict and the tables, and writes the file.
     ///
-    /// Returns the errors of the study. A file that cannot be written is an error before the study starts.
+    /// Returns the errors of the study. A file that cannot be written is an error before the study
+    /// starts.
     pub fn run(&self, study: impl FnOnce(&Progress) -> io::Result<Results>) -> Outcome {
         if let Some(path) = &self.csv {
             check_output(path)?;

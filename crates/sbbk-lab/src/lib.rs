@@ -1,5 +1,5 @@
-//! The studies that print the tables of README and docs/measurements.md, and the replay of worlds in
-//! a browser.
+//! The studies that print the tables of README and docs/measurements.md, and the replay of worlds
+//! in a browser.
 //!
 //! [`backend`] has the dispatchers, [`metrics`] measures one run, [`study`] compares the backends,
 //! [`report`] shows the results, and [`replay`] writes pages that play runs.

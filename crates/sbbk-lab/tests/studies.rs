@@ -1,4 +1,5 @@
-//! Every study on a small scale: its rows fill its tables, its verdict has numbers, and SBBK is right.
+//! Every study on a small scale: its rows fill its tables, its verdict has numbers, and SBBK is
+//! right.
 
 use clap::ValueEnum;
 use rapier3d::geometry::TriMeshFlags;
@@ -107,8 +108,8 @@ fn everyday_scenes_touch_and_are_judged() {
     assert_eq!(of("sbbk").filter(is_robot).map(touches).collect::<Vec<_>>(), [false, true]);
 }
 
-/// Would catch scenes that no backend could pass, flags that are not set, and runs under the name of
-/// another column.
+/// Would catch scenes that no backend could pass, flags that are not set, and runs under the name
+/// of another column.
 #[test]
 fn the_control_passes_and_sheets_hold_plain_meshes() {
     let columns = vec![Column::StockFlag, Column::Sbbk, Column::Control];
@@ -133,8 +134,9 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
     assert_eq!(passed(Column::StockFlag, "back"), [false; 2]);
 }
 
-/// Would catch scenes that Rapier's own shapes could not pass, and scenes that differ by column. Rings,
-/// gears and bowls are left out: their hulls have seams. Rapier's shapes drop some parts of grippers.
+/// Would catch scenes that Rapier's own shapes could not pass, and scenes that differ by column.
+/// Rings, gears and bowls are left out: their hulls have seams. Rapier's shapes drop some parts of
+/// grippers.
 #[test]
 fn random_scenes_hold_with_rapiers_own_shapes() {
     let columns = vec![Column::Stock, Column::Sbbk, Column::Control];

@@ -16,7 +16,8 @@ use crate::truth::{affine, convex_body};
 /// Share of the prediction distance within which a pair may be reported or not. Higher: real
 /// misses pass; lower: rounding to f32 counts as an error.
 const SET_BAND: f64 = 0.01;
-/// Tolerated errors of the distance of two triangles, as shares of the prediction distance and of the depth.
+/// Tolerated errors of the distance of two triangles, as shares of the prediction distance and of
+/// the depth.
 const MESH_BANDS: [f64; 2] = [0.05, 0.0];
 /// [`MESH_BANDS`] of a triangle and a convex shape.
 const CONVEX_BANDS: [f64; 2] = [0.01, 1.0e-5];

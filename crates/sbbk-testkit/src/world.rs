@@ -11,9 +11,9 @@ pub fn solver_points(world: &PhysicsWorld) -> usize {
     manifolds.map(|manifold| manifold.data.solver_contacts.len()).sum()
 }
 
-/// Returns a hash of what a step changes in a world, bit for bit. It has poses and velocities of bodies, and all
-/// contacts with order, places, features and impulses. Contact pairs are sorted by their colliders, because the
-/// order of Rapier's graph is not defined.
+/// Returns a hash of what a step changes in a world, bit for bit. It has poses and velocities of
+/// bodies, and all contacts with order, places, features and impulses. Contact pairs are sorted by
+/// their colliders, because the order of Rapier's graph is not defined.
 pub fn fingerprint(world: &PhysicsWorld) -> u64 {
     let mut hash = DefaultHasher::new();
     let mut add = |bits: u32| hash.write_u32(bits);

@@ -1,5 +1,5 @@
-//! The f64 reference for tests: slow, short, and with other formulas than the code under test, which
-//! this crate does not know.
+//! The f64 reference for tests: slow, short, and with other formulas than the code under test,
+//! which this crate does not know.
 //!
 //! [`contact`](fn@contact) serves two triangles, [`pairs_within`] two meshes, [`ConvexBody`] a
 //! triangle and a convex body. All take plain data.

@@ -110,7 +110,8 @@ impl Polytope {
         ConvexTruth { distance: if found.is_empty() { 0.0 } else { widest }, normals }
     }
 
-    /// Calls `test` with the normals of all possible faces of the Minkowski difference of the hull and a triangle.
+    /// Calls `test` with the normals of all possible faces of the Minkowski difference of the hull
+    /// and a triangle.
     fn for_each_axis(
         &self,
         corner: DVec3,

@@ -47,8 +47,8 @@ pub fn contact(triangle1: &[DVec3; 3], triangle2: &[DVec3; 3]) -> TruthContact {
     }
 }
 
-/// The gap between the shadows of two triangles on a unit axis, negative if they overlap. Triangle 2
-/// lies beyond triangle 1 by the gap.
+/// The gap between the shadows of two triangles on a unit axis, negative if they overlap. Triangle
+/// 2 lies beyond triangle 1 by the gap.
 pub fn separation(triangle1: &[DVec3; 3], triangle2: &[DVec3; 3], axis: DVec3) -> f64 {
     let far1 = triangle1.map(|v| (v - triangle1[0]).dot(axis));
     let near2 = triangle2.map(|v| (v - triangle1[0]).dot(axis));

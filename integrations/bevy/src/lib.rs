@@ -77,8 +77,8 @@ impl Plugin for SbbkPlugin {
     }
 }
 
-/// The dispatcher of all contexts: to ask it for [`stats`](SbbkDispatcher::stats). May be replaced at
-/// any time.
+/// The dispatcher of all contexts: to ask it for [`stats`](SbbkDispatcher::stats). May be replaced
+/// at any time.
 #[derive(Resource, Clone, Debug, Deref)]
 pub struct Sbbk(pub SbbkDispatcher);
 

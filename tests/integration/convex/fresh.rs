@@ -5,8 +5,8 @@ use sbbk_core::traverse::Placement;
 use sbbk_testkit::truth::convex_body;
 use sbbk_truth::ConvexBody;
 
-/// Compares contacts with brute force in f64, up to `tolerance`. Returns their number. Triangles beside
-/// the box of the shape are known to be far.
+/// Compares contacts with brute force in f64, up to `tolerance`. Returns their number. Triangles
+/// beside the box of the shape are known to be far.
 fn check_against_truth(
     question: &Question,
     name: &str,
@@ -61,7 +61,8 @@ fn a_box_that_lies_flat_touches_at_its_corners() {
     }
 }
 
-/// Would catch a capsule on its end that touches twice at one place: Rapier's solver has twice the work.
+/// Would catch a capsule on its end that touches twice at one place: Rapier's solver has twice the
+/// work.
 #[test]
 fn a_capsule_has_a_point_at_each_end() {
     let (dispatcher, mesh) = (SbbkDispatcher::default(), shape(&mesh::floor(400.0, 1)));
@@ -98,8 +99,8 @@ fn normals_across_a_flat_floor_have_no_noise() {
     }
 }
 
-/// Shapes of all kinds and sizes, against brute force in f64. Would catch a shape or pose taken for another, a
-/// missing radius, a tolerance with a unit, and a lost or invented triangle.
+/// Shapes of all kinds and sizes, against brute force in f64. Would catch a shape or pose taken for
+/// another, a missing radius, a tolerance with a unit, and a lost or invented triangle.
 #[test]
 fn exact_contacts_are_the_true_ones() {
     let dispatcher = per_triangle();
@@ -162,8 +163,8 @@ fn a_huge_floor_loses_no_contact() {
     assert!(count > 1000, "{count} contacts");
 }
 
-/// Would catch points that a constrained normal puts far deeper than the shape is: Parry drops those
-/// that are five times as deep.
+/// Would catch points that a constrained normal puts far deeper than the shape is: Parry drops
+/// those that are five times as deep.
 #[test]
 fn constrained_normals_make_no_deep_points() {
     let bumps = mesh::terrain(4.0, 12, 0.7);

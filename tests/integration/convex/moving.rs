@@ -90,8 +90,8 @@ impl<'a> Cast<'a> {
         linear + turn(mesh) * arm(mesh) + turn(shape) * shape_arm
     }
 
-    /// The least distance on the way to a time, and whether the march got there: no touch deeper than
-    /// `tolerance` is missed. Triangles are looked at when they may be the nearest.
+    /// The least distance on the way to a time, and whether the march got there: no touch deeper
+    /// than `tolerance` is missed. Triangles are looked at when they may be the nearest.
     pub fn march(&self, body: &ConvexBody, speed: f64, tolerance: f64, end: f64) -> (f64, bool) {
         let (mut time, mut nearest) = (0.0, f64::INFINITY);
         let mut clear = vec![f64::NEG_INFINITY; self.mesh.indices().len()];

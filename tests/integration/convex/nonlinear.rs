@@ -299,8 +299,8 @@ fn bodies_that_glide_along_a_floor_meet_the_wall() {
     }
 }
 
-/// Would catch a half-space that turns about its centre like a body, or not at all. Impacts are the same if the time has
-/// no end.
+/// Would catch a half-space that turns about its centre like a body, or not at all. Impacts are the
+/// same if the time has no end.
 #[test]
 fn turning_half_spaces_meet_the_far_corner() {
     let dispatcher = SbbkDispatcher::default();
@@ -350,7 +350,8 @@ fn meshes_meet_half_spaces_whatever_their_options() {
     }
 }
 
-/// Would catch a tolerance of zero: a mesh that is a point has no size, and takes all steps there are.
+/// Would catch a tolerance of zero: a mesh that is a point has no size, and takes all steps there
+/// are.
 #[test]
 fn a_point_that_falls_is_met() {
     let point = TriMesh::new(vec![Vec3::ZERO; 3], vec![[0, 1, 2]]).expect("it has a triangle");
@@ -384,8 +385,8 @@ fn a_body_in_a_hollow_is_apart() {
     }
 }
 
-/// Motions and times that are no numbers: nothing is found, nothing panics or goes on for ever. Bodies
-/// that do not move are met where they touch, however long.
+/// Motions and times that are no numbers: nothing is found, nothing panics or goes on for ever.
+/// Bodies that do not move are met where they touch, however long.
 #[test]
 fn non_finite_input_has_no_result() {
     let dispatcher = SbbkDispatcher::default();

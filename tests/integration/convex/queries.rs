@@ -13,8 +13,8 @@ pub(super) fn truth_of(triangle: &Triangle, body: &ConvexBody, pose: DAffine3) -
     body.distance(&triangle.vertices().each_ref().map(place))
 }
 
-/// The least signed distance of a triangle from a body in the box `around`. Triangles whose own boxes are
-/// farther than the nearest triangle so far are left out.
+/// The least signed distance of a triangle from a body in the box `around`. Triangles whose own
+/// boxes are farther than the nearest triangle so far are left out.
 pub(super) fn least_at(mesh: &TriMesh, body: &ConvexBody, around: &Aabb, pose: DAffine3) -> f64 {
     let [low, high] = [around.mins, around.maxs].map(|end| end.as_dvec3());
     // The box is rounded to f32.

@@ -43,9 +43,11 @@ fn pyramid(corners: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (around.chain([top, base]).collect(), (0..corners).flat_map(side).collect())
 }
 
-/// Cones, cylinders, hulls and meshes with round bases, on a ground whose triangles are as large as they are.
+/// Cones, cylinders, hulls and meshes with round bases, on a ground whose triangles are as large as
+/// they are.
 ///
-/// Would catch bodies that roll on one point of a rim, or between points that hover. Up to half of them were awake.
+/// Would catch bodies that roll on one point of a rim, or between points that hover. Up to half of
+/// them were awake.
 #[test]
 fn discs_on_uneven_ground_fall_asleep() {
     let ground = mesh::terrain(20.0, 20, 0.6).shape();

@@ -43,8 +43,9 @@ fn rods() -> Vec<Rod> {
     ]
 }
 
-/// Rods across an edge of a closed box, up to 1 cm deep: a way out of as much is known. Would catch contacts
-/// with the normal of a face that the rod passes beside. These were up to a metre deep, and one in fourteen.
+/// Rods across an edge of a closed box, up to 1 cm deep: a way out of as much is known. Would catch
+/// contacts with the normal of a face that the rod passes beside. These were up to a metre deep,
+/// and one in fourteen.
 #[test]
 fn rods_over_edges_touch_no_far_face() {
     let boxes = [
@@ -59,7 +60,8 @@ fn rods_over_edges_touch_no_far_face() {
         let (mut contacts, mut too_deep, mut lost, mut worst) = (0, 0, 0, 0.0_f32);
         for i in 0..400_u32 {
             let mesh = shape(&mesh::cuboid(half, 1 + i / 4 % 3));
-            // A direction between the normals of two sides: the box is behind its plane at the edge.
+            // A direction between the normals of two sides: the box is behind its plane at the
+            // edge.
             let (sin, cos) = within(0.2, FRAC_PI_2 - 0.2).sin_cos();
             let out = Vec3::new(0.0, cos, sin);
             let edge = Vec3::new(within(-0.8, 0.8) * half.x, half.y, half.z);

@@ -123,7 +123,8 @@ fn contacts_of_a_surface_are_the_nearest_at_their_points() {
     assert!(kept > 600 && turned > 1000 && left_out > 1000, "{kept}, {turned}, {left_out}");
 }
 
-/// Would catch normal cones that bring ghost contacts back, and flags with which a body feels internal edges.
+/// Would catch normal cones that bring ghost contacts back, and flags with which a body feels
+/// internal edges.
 #[test]
 fn flags_of_a_rigid_mesh_change_no_contact() {
     let flags = [
@@ -163,8 +164,9 @@ fn flags_of_a_rigid_mesh_change_no_contact() {
     assert!(count > 300, "{count} contacts");
 }
 
-/// Cuboids that cross the edge of a box of 12 to 432 triangles, by up to 0.04. Would catch contacts whose normals come from a
-/// face that the cuboid has half passed. These led into the box, and were up to 27 times too deep.
+/// Cuboids that cross the edge of a box of 12 to 432 triangles, by up to 0.04. Would catch contacts
+/// whose normals come from a face that the cuboid has half passed. These led into the box, and were
+/// up to 27 times too deep.
 #[test]
 fn cuboids_over_edges_are_not_pushed_in() {
     let (mut random, mut contacts, mut too_deep) = (Rand32::new(3), 0, 0);

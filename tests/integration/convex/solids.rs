@@ -37,8 +37,8 @@ fn fall(
     [end.translation().y, fastest]
 }
 
-/// Slabs of two units, whose upper side is at 0, of few triangles and of many. Would catch bodies that
-/// stay in them, leave by the longer way or are flung out.
+/// Slabs of two units, whose upper side is at 0, of few triangles and of many. Would catch bodies
+/// that stay in them, leave by the longer way or are flung out.
 #[test]
 fn convex_shapes_leave_solids_by_the_shorter_way() {
     let mut stay = 0;
@@ -60,8 +60,8 @@ fn convex_shapes_leave_solids_by_the_shorter_way() {
     assert!(stay > 10, "{stay} stay by default: what is this test worth?");
 }
 
-/// A room that is modelled by one closed surface. Would catch a body that is thrown out of it by default,
-/// or though it is said to be a sheet.
+/// A room that is modelled by one closed surface. Would catch a body that is thrown out of it by
+/// default, or though it is said to be a sheet.
 #[test]
 fn rooms_that_are_sheets_keep_what_is_in_them() {
     let room = mesh::cuboid(Vec3::splat(4.0), 4).shape();
@@ -129,10 +129,11 @@ fn ways_out_are_a_function_of_the_pose() {
     assert!(ways > 200, "{ways}");
 }
 
-/// Rooms are closed meshes that face outward, with a table or an open sheet in them, as one mesh. One table has a leg through
-/// the floor.
+/// Rooms are closed meshes that face outward, with a table or an open sheet in them, as one mesh.
+/// One table has a leg through the floor.
 ///
-/// Would catch a table that counts as a wall within the body. Would also catch bodies that count as outside beside a leg.
+/// Would catch a table that counts as a wall within the body. Would also catch bodies that count as
+/// outside beside a leg.
 #[test]
 fn what_stands_in_a_room_has_contacts() {
     let table = mesh::cuboid(Vec3::new(1.0, 0.3, 1.0), 1).mapped(|vertex| vertex - 0.3 * Vec3::Y);
@@ -164,8 +165,8 @@ fn what_stands_in_a_room_has_contacts() {
     }
 }
 
-/// Closed meshes around shapes, wound either way. Would catch contacts of a room that count as walls within the body because the
-/// faces lead inwards.
+/// Closed meshes around shapes, wound either way. Would catch contacts of a room that count as
+/// walls within the body because the faces lead inwards.
 #[test]
 fn rooms_whose_faces_lead_in_have_the_contacts_of_others() {
     let dispatcher = every();

@@ -30,8 +30,8 @@ fn bodies() -> [(&'static str, SharedShape); 5] {
     ]
 }
 
-/// The edge at the foot of the wall is its nearest point to these bodies, and the floor is nearer still. They
-/// have sunk into the floor as far as Rapier allows, or less.
+/// The edge at the foot of the wall is its nearest point to these bodies, and the floor is nearer
+/// still. They have sunk into the floor as far as Rapier allows, or less.
 ///
 /// Would catch walls that are taken for ghosts of the floor. Cones walked through them.
 #[test]

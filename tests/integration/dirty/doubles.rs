@@ -36,8 +36,8 @@ fn doubles_change_no_contact() {
     assert!(contacts > 500, "{contacts}");
 }
 
-/// Balls that fall at 6 m/s on a floor with triangles for either side. Would catch a side that is preferred, as its triangles come
-/// first.
+/// Balls that fall at 6 m/s on a floor with triangles for either side. Would catch a side that is
+/// preferred, as its triangles come first.
 #[test]
 fn fast_bodies_stay_above_two_sided_floors() {
     let [up, down] = [mesh::floor(6.0, 2), mesh::turned_inside_out(mesh::floor(6.0, 2))];
@@ -58,8 +58,8 @@ fn fast_bodies_stay_above_two_sided_floors() {
 /// Segments of the disc.
 const SEGMENTS: u32 = 32;
 
-/// A disc on a facet of its rim, with single triangles that are wound the other way. Would catch neighbours whose normals count
-/// as outward ones: a corner of the facet has no contact.
+/// A disc on a facet of its rim, with single triangles that are wound the other way. Would catch
+/// neighbours whose normals count as outward ones: a corner of the facet has no contact.
 #[test]
 fn flipped_triangles_carry_as_others_do() {
     let profile = [[0.0, -0.1], [0.5, -0.1], [0.5, 0.1], [0.0, 0.1]];
@@ -99,8 +99,9 @@ fn flipped_triangles_carry_as_others_do() {
     }
 }
 
-/// Cubes that are sunk a little in the narrow side of a slab. Up to 3 % of the triangles of either mesh are wound the other way.
-/// Would catch contacts far along the wall, of triangles that know no way out of it.
+/// Cubes that are sunk a little in the narrow side of a slab. Up to 3 % of the triangles of either
+/// mesh are wound the other way. Would catch contacts far along the wall, of triangles that know no
+/// way out of it.
 #[test]
 fn cubes_in_a_narrow_side_have_no_contact_along_it() {
     let (every, mut random) = (every(), Rand32::new(1));

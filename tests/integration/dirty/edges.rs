@@ -26,8 +26,8 @@ fn bodies(half: Vec3, round: (&'static str, SharedShape)) -> [(&'static str, Sha
     ]
 }
 
-/// Bodies that come in over an edge of a block. Would catch an edge with a T-junction that counts as a border, and contacts
-/// along the face beside an edge that stop bodies above it.
+/// Bodies that come in over an edge of a block. Would catch an edge with a T-junction that counts
+/// as a border, and contacts along the face beside an edge that stop bodies above it.
 #[test]
 fn bodies_over_an_edge_of_a_block_touch_nothing() {
     let half = Vec3::new(0.1, 0.05, 0.08);
@@ -57,8 +57,9 @@ fn bodies_over_an_edge_of_a_block_touch_nothing() {
     assert!(count > 10_000, "{count} contacts");
 }
 
-/// Flat bodies that are sunk in the top of a block and reach past its edge by up to 2 cm, or nearly so. Would catch contacts with the
-/// wall behind the edge, which lead into the block and stop bodies that slide off.
+/// Flat bodies that are sunk in the top of a block and reach past its edge by up to 2 cm, or nearly
+/// so. Would catch contacts with the wall behind the edge, which lead into the block and stop
+/// bodies that slide off.
 #[test]
 fn bodies_sunk_in_a_block_do_not_meet_the_wall_below_its_edge() {
     let half = Vec3::new(0.1, 0.05, 0.08);
@@ -83,8 +84,9 @@ fn bodies_sunk_in_a_block_do_not_meet_the_wall_below_its_edge() {
     assert!(count > 1000, "{count} contacts");
 }
 
-/// Flat bodies that are sunk in two blocks and reach over the gap between these, so that the far wall is near. Would catch contacts
-/// with the far wall. Such contacts stop bodies that slide over the gap.
+/// Flat bodies that are sunk in two blocks and reach over the gap between these, so that the far
+/// wall is near. Would catch contacts with the far wall. Such contacts stop bodies that slide over
+/// the gap.
 #[test]
 fn bodies_over_a_gap_do_not_meet_its_far_wall() {
     let profile = [[0.0, -0.1], [0.3, -0.1], [0.3, 0.1], [0.0, 0.1]].map(Vec2::from);
@@ -118,8 +120,9 @@ fn bodies_over_a_gap_do_not_meet_its_far_wall() {
     assert!(count > 1000 && 1000 * aside <= count, "{aside} of {count} aside");
 }
 
-/// Flat bodies on two blocks with chamfers of 1 cm, before the chamfer on the far side of the gap. Would catch contacts with this chamfer or
-/// with the wall below. Such contacts launch bodies that slide over the gap.
+/// Flat bodies on two blocks with chamfers of 1 cm, before the chamfer on the far side of the gap.
+/// Would catch contacts with this chamfer or with the wall below. Such contacts launch bodies that
+/// slide over the gap.
 #[test]
 fn bodies_over_a_gap_do_not_meet_its_far_chamfer() {
     let bodies = bodies(Vec3::new(0.3, 0.1, 0.2), ("cone", SharedShape::cone(0.1, 0.3)));
@@ -160,8 +163,9 @@ fn step_down(height: Real) -> [Mesh; 2] {
     [solid, sheet]
 }
 
-/// Bodies at the height of the upper of two floors, less than a prediction distance before the edge between these. Would catch contacts
-/// with the foot of the step, or with the back of its riser. Such contacts stop bodies that slide over the edge.
+/// Bodies at the height of the upper of two floors, less than a prediction distance before the edge
+/// between these. Would catch contacts with the foot of the step, or with the back of its riser.
+/// Such contacts stop bodies that slide over the edge.
 #[test]
 fn bodies_before_a_step_down_meet_neither_its_foot_nor_its_riser() {
     let bodies = bodies(Vec3::new(0.25, 0.15, 0.2), ("cone", SharedShape::cone(0.15, 0.25)));

@@ -46,8 +46,8 @@ fn fall(ground: &SharedShape, body: &Mesh, random: &mut Rand32) -> [Real; 2] {
     [fastest, -lowest(body, end.position())]
 }
 
-/// Would catch contacts aslant to a flat ground: without friction they alone push bodies aside. At 8 m/s a step
-/// takes a body 13 cm into the ground.
+/// Would catch contacts aslant to a flat ground: without friction they alone push bodies aside. At
+/// 8 m/s a step takes a body 13 cm into the ground.
 #[test]
 fn meshes_that_fall_on_flat_grounds_are_not_kicked_aside() {
     for (name, ground) in grounds() {

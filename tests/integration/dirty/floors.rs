@@ -42,8 +42,8 @@ fn bodies_ride_on_dirty_floors_as_on_a_cuboid() {
     COURSE.judge("share of the path on a cuboid, and added speed upwards", &floors(), &[]);
 }
 
-/// Cubes of 5 cm on triangles as long as they are, at Rapier's default length unit. Would catch contacts with
-/// triangles ahead, within the prediction distance.
+/// Cubes of 5 cm on triangles as long as they are, at Rapier's default length unit. Would catch
+/// contacts with triangles ahead, within the prediction distance.
 #[test]
 fn small_cubes_slide_at_the_default_unit_as_on_a_cuboid() {
     const HALF: f32 = 0.025;
@@ -68,7 +68,8 @@ fn small_cubes_slide_at_the_default_unit_as_on_a_cuboid() {
     }
 }
 
-/// Hollow cubes, whose walls are thinner than a prediction distance. Would catch contacts with the inner sides of walls.
+/// Hollow cubes, whose walls are thinner than a prediction distance. Would catch contacts with the
+/// inner sides of walls.
 #[test]
 fn hollow_cubes_slide_on_sheets_as_cuboids() {
     const HALF: f32 = 0.4;
@@ -92,7 +93,8 @@ fn hollow_cubes_slide_on_sheets_as_cuboids() {
 /// Half extents of the boxes.
 const HALVES: Vec3 = Vec3::new(0.3, 0.2, 0.4);
 
-/// Slides a box with a contact skin. Returns its way, and how far its middle and its upright axis are off.
+/// Slides a box with a contact skin. Returns its way, and how far its middle and its upright axis
+/// are off.
 fn slide(ground: SharedShape, shape: SharedShape, skin: Real, turn: Real) -> [Real; 3] {
     let collider = |shape| ColliderBuilder::new(shape).friction(0.3);
     let world = world(collider(ground));
@@ -105,8 +107,8 @@ fn slide(ground: SharedShape, shape: SharedShape, skin: Real, turn: Real) -> [Re
     [body.translation().x + 10.0, (body.translation().y - height).abs(), 1.0 - up.y]
 }
 
-/// Would catch ghost contacts of bodies on a contact skin. Skins of more than a tenth of the body's radius leave no
-/// contact near.
+/// Would catch ghost contacts of bodies on a contact skin. Skins of more than a tenth of the body's
+/// radius leave no contact near.
 #[test]
 fn boxes_with_a_contact_skin_slide_as_cuboids_do() {
     let cuboid = SharedShape::cuboid(HALVES.x, HALVES.y, HALVES.z);
@@ -129,8 +131,9 @@ fn boxes_with_a_contact_skin_slide_as_cuboids_do() {
     }
 }
 
-/// Small boxes on a contact skin as large as they are. Would catch points of sides that end beyond the prediction distance. These took the
-/// places of corners that carry, and the boxes rocked for ever.
+/// Small boxes on a contact skin as large as they are. Would catch points of sides that end beyond
+/// the prediction distance. These took the places of corners that carry, and the boxes rocked for
+/// ever.
 #[test]
 fn small_boxes_with_a_contact_skin_come_to_rest() {
     let ground = mesh::floor(12.0, 20).shape();

@@ -4,8 +4,8 @@ use super::*;
 const SLAB: Vec3 = Vec3::new(8.0, 0.5, 8.0);
 const BODY: f32 = 0.25;
 
-/// Shares of the height of a part that are in the slab. At the first one rounding has lifted the part, at the second it
-/// stands on the slab.
+/// Shares of the height of a part that are in the slab. At the first one rounding has lifted the
+/// part, at the second it stands on the slab.
 const SUNK: [f32; 7] = [-1.0e-4, 0.0, 0.1, 0.25, 0.36, 0.45, 0.6];
 
 /// A mesh of a slab and of parts that are sunk into it by a share of their height.
@@ -67,8 +67,9 @@ fn levels_of_boxes_hold_bodies() {
     judge("bodies lost in a slab with parts on it", &cases, &[]);
 }
 
-/// Small pieces that fall by 1 to 4 units move by their own size a step. Some are within the floor at the first query that
-/// meets it. Would catch a floor that is a room for them, a push-out to a wall within, and the back of a face as a contact.
+/// Small pieces that fall by 1 to 4 units move by their own size a step. Some are within the floor
+/// at the first query that meets it. Would catch a floor that is a room for them, a push-out to a
+/// wall within, and the back of a face as a contact.
 #[test]
 fn debris_stays_on_floors_of_slabs() {
     let slab = |half: Vec3, place: Vec3| mesh::cuboid(half, 1).mapped(|v| v + place);

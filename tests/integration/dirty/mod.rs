@@ -1,8 +1,8 @@
 //! Meshes as people have them, in worlds, beside the same bodies on Rapier's cuboid.
 //!
-//! Each test prints a table and lists the cases that fail today. It fails when another case fails, and
-//! when a listed case passes. To see the tables:
-//! `cargo test -p sbbk --test integration dirty -- --nocapture`.
+//! Each test prints a table and lists the cases that fail today. It fails when another case fails,
+//! and when a listed case passes. To see the tables: `cargo test -p sbbk --test integration dirty
+//! -- --nocapture`.
 
 use crate::prelude::*;
 use rapier_integration::PreparedTree;

@@ -32,7 +32,8 @@ fn height(vessel: &Mesh, flags: TriMeshFlags, lid: SharedShape, bottom: f32) -> 
     lid.translation().y + bottom - HALF
 }
 
-/// Would catch rims of single walls that do not carry what overhangs them by less than a centimetre.
+/// Would catch rims of single walls that do not carry what overhangs them by less than a
+/// centimetre.
 #[test]
 fn rims_carry_lids() {
     let mut cases = Vec::new();

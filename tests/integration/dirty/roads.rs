@@ -36,7 +36,8 @@ fn bodies_ride_over_chunks_as_on_a_cuboid() {
     COURSE.judge("chunks at 10 m/s: share of the path, added speed upwards", &roads(), KNOWN);
 }
 
-/// Would catch borders that a ball meets from ahead. At rest it sinks in by an eighth of the prediction distance.
+/// Would catch borders that a ball meets from ahead. At rest it sinks in by an eighth of the
+/// prediction distance.
 #[test]
 fn balls_roll_over_a_seam_as_over_a_floor() {
     const RADIUS: f32 = 0.2;
@@ -57,8 +58,9 @@ fn balls_roll_over_a_seam_as_over_a_floor() {
     }
 }
 
-/// Tiles of one unit, each a mesh of two triangles. Would catch borders that are met ahead of what rolls: the surface of a wheel comes
-/// down there, and the wheel hopped. Rods also turned, as they were met at one point.
+/// Tiles of one unit, each a mesh of two triangles. Would catch borders that are met ahead of what
+/// rolls: the surface of a wheel comes down there, and the wheel hopped. Rods also turned, as they
+/// were met at one point.
 #[test]
 fn what_rolls_over_tiles_keeps_its_speed() {
     let tiles =
@@ -94,8 +96,8 @@ fn what_rolls_over_tiles_keeps_its_speed() {
 const KNOWN: &[(&str, &str)] =
     &[("16 slabs", "mesh cube, mesh ball, cuboid, ball, capsule, cylinder, hull")];
 
-/// Would catch bodies that the rim of a sheet holds up beyond its end. After a fall of seven metres, a
-/// metre is a difference of 0.08 s.
+/// Would catch bodies that the rim of a sheet holds up beyond its end. After a fall of seven
+/// metres, a metre is a difference of 0.08 s.
 #[test]
 fn bodies_leave_the_rim_of_a_sheet_as_that_of_a_cuboid() {
     let mut cases = Vec::new();

@@ -41,8 +41,8 @@ fn bodies_stay_in_rooms() {
     judge("height of a body in a room with its floor at -3, after 4 s", &cases, &[]);
 }
 
-/// Bodies slide over the floor of a room towards a block that pierces the floor, or drop onto the block. Room and block are one
-/// mesh.
+/// Bodies slide over the floor of a room towards a block that pierces the floor, or drop onto the
+/// block. Room and block are one mesh.
 ///
 /// Would catch sides of the block that tell that the body is outside of the room.
 #[test]
@@ -74,8 +74,8 @@ fn bodies_meet_furniture_that_pierces_the_floor() {
     judge("place of a body at a block of 2 that pierces the floor at -3", &cases, &[]);
 }
 
-/// A ball flies through a room and into its walls. Would catch contacts that depend on the queries before, and descents where
-/// nothing is near.
+/// A ball flies through a room and into its walls. Would catch contacts that depend on the queries
+/// before, and descents where nothing is near.
 #[test]
 fn contacts_in_a_room_are_a_function_of_the_pose() {
     let ball = mesh::ball(BODY, 6).shape();
@@ -98,8 +98,9 @@ fn contacts_in_a_room_are_a_function_of_the_pose() {
     }
 }
 
-/// Mesh bodies fall at 6 m/s onto the floor of a room, or onto a block that pierces it. Room and block are one mesh, and the faces
-/// of the room lead inwards. Solid towers stand beside one of two rooms, so most faces lead outwards.
+/// Mesh bodies fall at 6 m/s onto the floor of a room, or onto a block that pierces it. Room and
+/// block are one mesh, and the faces of the room lead inwards. Solid towers stand beside one of two
+/// rooms, so most faces lead outwards.
 ///
 /// Would catch walls that push bodies out, as the room counts as a body that is inside out.
 #[test]
@@ -139,7 +140,8 @@ fn fast_bodies_stay_in_rooms_that_face_inwards() {
     }
 }
 
-/// Bodies fall in low halls whose faces lead inwards. Would catch halls that count as flat solids, so all bodies fell through the floor.
+/// Bodies fall in low halls whose faces lead inwards. Would catch halls that count as flat solids,
+/// so all bodies fell through the floor.
 #[test]
 fn bodies_stay_in_low_halls_that_face_inwards() {
     for (width, cells, flags) in
@@ -164,7 +166,8 @@ fn bodies_stay_in_low_halls_that_face_inwards() {
     }
 }
 
-/// Small bodies are with their middles behind the floor after one step. Would catch rooms that push them out.
+/// Small bodies are with their middles behind the floor after one step. Would catch rooms that push
+/// them out.
 #[test]
 fn bodies_just_behind_walls_that_face_inwards_come_back() {
     const HALF: f32 = 0.06;
@@ -185,8 +188,8 @@ fn bodies_just_behind_walls_that_face_inwards_come_back() {
     }
 }
 
-/// Rooms whose floor has a cell that is wound the other way. Would catch bodies that count as outside, as the nearest triangle
-/// faces them.
+/// Rooms whose floor has a cell that is wound the other way. Would catch bodies that count as
+/// outside, as the nearest triangle faces them.
 #[test]
 fn bodies_stay_in_rooms_with_turned_triangles() {
     for cells in [2, 6] {
@@ -209,7 +212,8 @@ fn bodies_stay_in_rooms_with_turned_triangles() {
     }
 }
 
-/// Number of twelve hulls that leave a room that shakes and rocks. The room has walls of a thickness, or single ones for 0.
+/// Number of twelve hulls that leave a room that shakes and rocks. The room has walls of a
+/// thickness, or single ones for 0.
 fn lost_in_rocking_room(seed: u64, thickness: f32) -> usize {
     const HALF: f32 = 0.55;
     const STONE: f32 = 0.1;
@@ -251,8 +255,9 @@ fn lost_in_rocking_room(seed: u64, thickness: f32) -> usize {
     stones.into_iter().filter(|&stone| place(stone).abs().max_element() > HALF + STONE).count()
 }
 
-/// Rapier keeps contacts while the room turns, so stones come half into the walls. Would catch contacts that then lead through
-/// these, as their normals come from a neighbour that the stone has half passed.
+/// Rapier keeps contacts while the room turns, so stones come half into the walls. Would catch
+/// contacts that then lead through these, as their normals come from a neighbour that the stone has
+/// half passed.
 #[test]
 fn stones_stay_in_a_rocking_room() {
     let rooms = (100..108).flat_map(|seed| [(seed, 0.0), (seed, 0.1)]);
@@ -261,7 +266,8 @@ fn stones_stay_in_a_rocking_room() {
     assert!(lost <= 3, "{lost} of 192");
 }
 
-/// Balls in tubes whose open ends are far apart. Would catch tubes that push balls out, as if these had sunk in.
+/// Balls in tubes whose open ends are far apart. Would catch tubes that push balls out, as if these
+/// had sunk in.
 #[test]
 fn bodies_stay_in_long_tubes() {
     const RADIUS: f32 = 1.0;

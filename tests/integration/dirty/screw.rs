@@ -10,8 +10,8 @@ const SECONDS: f32 = 6.0;
 /// Time in which the nut falls by its play.
 const SETTLED: f32 = 0.5;
 
-/// Acceleration of a nut under its weight along a frictionless axis, by the unrolled thread; 0 if it
-/// is locked. Its radius of gyration squared is `gyration`.
+/// Acceleration of a nut under its weight along a frictionless axis, by the unrolled thread; 0 if
+/// it is locked. Its radius of gyration squared is `gyration`.
 fn acceleration(friction: f32, gyration: f32) -> f32 {
     let lead = BOLT.pitch / TAU;
     // The flanks lean.

@@ -103,8 +103,8 @@ fn vessels_hold_what_lies_in_them() {
     judge("height of a body in a vessel of radius 1, after 3 s", &cases, &[]);
 }
 
-/// Hollow boxes whose walls are thinner than Rapier lets bodies sink in. Would catch contacts of the inner sides of two
-/// walls, which hold the boxes in each other and shake them.
+/// Hollow boxes whose walls are thinner than Rapier lets bodies sink in. Would catch contacts of
+/// the inner sides of two walls, which hold the boxes in each other and shake them.
 #[test]
 fn piles_of_hollow_boxes_come_to_rest() {
     let hollow = |half: Vec3| {

@@ -52,7 +52,8 @@ fn thin_bodies_rest_on_the_ground() {
     judge("bodies of nine below the ground, 2 s after a fall of 2 cm", &cases, &[]);
 }
 
-/// Drops 36 plates or discs in a square from a height, tilted each in its own way. Returns the height of each after four seconds.
+/// Drops 36 plates or discs in a square from a height, tilted each in its own way. Returns the
+/// height of each after four seconds.
 fn dropped(ground: ColliderBuilder, body: &Mesh, height: f32) -> Vec<f32> {
     let bodies = (0..36).map(|i: u8| {
         let [row, column] = [i / 6, i % 6].map(f32::from);
@@ -64,8 +65,8 @@ fn dropped(ground: ColliderBuilder, body: &Mesh, height: f32) -> Vec<f32> {
     settled(240, world(ground), bodies).iter().map(|place| place.y).collect()
 }
 
-/// Plates of 2 cm sink in by more than they are thick. Would catch plates that go through since triangles of a wavy
-/// ground disagree on their side. Four of 36 went through.
+/// Plates of 2 cm sink in by more than they are thick. Would catch plates that go through since
+/// triangles of a wavy ground disagree on their side. Four of 36 went through.
 #[test]
 fn plates_stay_on_wavy_grounds() {
     let wave = |at: Vec3| at.with_y(0.05 * (2.0 * at.x).sin() * (1.7 * at.z).cos());
@@ -78,7 +79,8 @@ fn plates_stay_on_wavy_grounds() {
     }
 }
 
-/// Would catch discs that stand on four points of one arc. They turn about that arc, sink in, and rock without end.
+/// Would catch discs that stand on four points of one arc. They turn about that arc, sink in, and
+/// rock without end.
 #[test]
 fn thin_discs_come_to_rest_on_a_cuboid() {
     let profile = [[0.0, -0.01], [0.4, -0.01], [0.4, 0.01], [0.0, 0.01]].map(Vec2::from_array);
@@ -89,8 +91,9 @@ fn thin_discs_come_to_rest_on_a_cuboid() {
     assert!(least > 0.005, "{least}");
 }
 
-/// Coins are Rapier's cylinders, on a closed mesh of twelve triangles. Would catch coins that get three points of one arc and the one
-/// opposite. These coins tip sideways and fall through the floor.
+/// Coins are Rapier's cylinders, on a closed mesh of twelve triangles. Would catch coins that get
+/// three points of one arc and the one opposite. These coins tip sideways and fall through the
+/// floor.
 #[test]
 fn coins_stay_on_a_box() {
     let floor = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1).mapped(|at| at - 0.5 * Vec3::Y);
@@ -109,8 +112,8 @@ fn coins_stay_on_a_box() {
     }
 }
 
-/// Small cubes fall fast, with the soft CCD that the guide recommends. Would catch contacts chosen without the nearest one: 23 of
-/// 80 cubes passed.
+/// Small cubes fall fast, with the soft CCD that the guide recommends. Would catch contacts chosen
+/// without the nearest one: 23 of 80 cubes passed.
 #[test]
 fn small_fast_cubes_stay_on_a_plate() {
     for (half, cells) in [(0.03, 1), (0.05, 3)] {

@@ -10,7 +10,8 @@ fn triangle() -> Mesh {
     Mesh::new("triangle", corners.to_vec(), vec![[0, 1, 2]])
 }
 
-/// Along the edges of the grid: quarter turns, any height that crosses, corners on the lattice or not.
+/// Along the edges of the grid: quarter turns, any height that crosses, corners on the lattice or
+/// not.
 fn along_lines(random: &mut Rand32, is_on_corners: bool) -> Pose {
     let mut quarters = |turn: fn(f32) -> Quat| turn(FRAC_PI_2 * random.rand_range(0..4) as f32);
     let turn = quarters(Quat::from_rotation_y) * quarters(Quat::from_rotation_z);

@@ -75,9 +75,9 @@ fn contacts_equal_those_of_the_terrain_as_a_mesh() {
 /// Would catch neighbours other than those of the mesh, holes taken for ground, and a top that is
 /// below.
 ///
-/// A mesh is searched for triangles that nearly touch an edge, and a field is not, so contacts at the
-/// steepest spikes differ. The middle of each mesh is above the ground. Contacts deeper than five prediction distances are
-/// left out, as several nearest triangles are equally right.
+/// A mesh is searched for triangles that nearly touch an edge, and a field is not, so contacts at
+/// the steepest spikes differ. The middle of each mesh is above the ground. Contacts deeper than
+/// five prediction distances are left out, as several nearest triangles are equally right.
 #[test]
 fn surfaces_are_those_of_the_terrain_as_a_mesh() {
     let mut random = Rand32::new(6);

@@ -123,8 +123,8 @@ impl Walk {
     }
 }
 
-/// Runs a history and returns the number of contacts. Panics unless a new dispatcher gives the same bits in
-/// the same order, and a rigid mesh built anew in any order.
+/// Runs a history and returns the number of contacts. Panics unless a new dispatcher gives the same
+/// bits in the same order, and a rigid mesh built anew in any order.
 fn run(history: &History, other: &dyn Shape) -> usize {
     let (dispatcher, mut contacts) = (every(), 0);
     let mut walk = Walk::new(history);

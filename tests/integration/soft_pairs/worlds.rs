@@ -36,8 +36,8 @@ fn a_soft_body_rests_on_a_height_field() {
     assert_eq!((stats.unsupported_queries, stats.trees), (0, 0));
 }
 
-/// Would catch contacts with the wrong part, in its frame, or of old vertices. The body rests where it does under
-/// stock.
+/// Would catch contacts with the wrong part, in its frame, or of old vertices. The body rests where
+/// it does under stock.
 #[test]
 fn a_soft_body_rests_on_a_compound_or_a_mesh_as_with_stock() {
     for ground in [table(), mesh::floor(12.0, 24).shape()] {

@@ -26,7 +26,8 @@ enum Kind<'a> {
 }
 
 impl SbbkDispatcher {
-    /// Updates the manifolds of a pair of shapes, and counts the work. Returns `None` if Parry must answer.
+    /// Updates the manifolds of a pair of shapes, and counts the work. Returns `None` if Parry must
+    /// answer.
     fn answer<M, C>(
         &self,
         pos12: &Pose,

@@ -17,8 +17,8 @@ use crate::{SbbkConfig, SbbkStats};
 
 /// A query dispatcher for Rapier, and for other hosts of Parry.
 ///
-/// Handles pairs of two meshes, and of a mesh and a convex shape. Also handles contacts of a mesh with compounds,
-/// polylines and height fields. All other queries go to Parry's
+/// Handles pairs of two meshes, and of a mesh and a convex shape. Also handles contacts of a mesh
+/// with compounds, polylines and height fields. All other queries go to Parry's
 /// [`DefaultQueryDispatcher`](parry3d::query::DefaultQueryDispatcher), except two triangles in
 /// `contact_manifold_convex_convex`. Clones share their trees.
 #[derive(Clone)]
@@ -73,7 +73,8 @@ impl SbbkDispatcher {
         Ok(Some(PreparedTree(self.store.register(mesh, Some(shape))?)))
     }
 
-    /// Registers a mesh and all its copies, and builds its tree now instead of in a step. Takes about 0.85 µs and 92 bytes a triangle.
+    /// Registers a mesh and all its copies, and builds its tree now instead of in a step. Takes
+    /// about 0.85 µs and 92 bytes a triangle.
     ///
     /// Each new pair finds the tree by a hash of the content, which takes about 4 ns a triangle:
     /// [`prepare_shape`](Self::prepare_shape) is better for large meshes that are one shape and its
@@ -101,14 +102,15 @@ impl SbbkDispatcher {
         Ok(PreparedTree(self.store.register(mesh, None)?))
     }
 
-    /// True if the mesh is registered: by [`prepare_shape`](Self::prepare_shape), or as one of more than
-    /// 8192 triangles by [`prepare`](Self::prepare).
+    /// True if the mesh is registered: by [`prepare_shape`](Self::prepare_shape), or as one of more
+    /// than 8192 triangles by [`prepare`](Self::prepare).
     pub fn is_registered(&self, mesh: &TriMesh) -> bool {
         self.store.registered(mesh).is_some()
     }
 
-    /// Returns what this mesh is taken for. A deformable mesh is a sheet, and so is one with a vertex that is NaN or infinite in
-    /// its box. Analyses the mesh if no query has done so, in up to 50 ms.
+    /// Returns what this mesh is taken for. A deformable mesh is a sheet, and so is one with a
+    /// vertex that is NaN or infinite in its box. Analyses the mesh if no query has done so, in up
+    /// to 50 ms.
     pub fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
         let Some(view) = self.store.view(mesh) else { return SurfaceKind::Sheet };
         let mut known = PairMesh::default();
@@ -174,13 +176,14 @@ impl PreparedTree {
         self.0.data.kind().expect("prepared")
     }
 
-    /// Overrides the detected kind. A mesh that is declared [`Solid`](SurfaceKind::Solid) is no room: it
-    /// also pushes out mesh bodies that are wholly inside. A detected solid is a room, so declaring what was
-    /// detected is a change. A declared [`Sheet`](SurfaceKind::Sheet) has no inside.
+    /// Overrides the detected kind. A mesh that is declared [`Solid`](SurfaceKind::Solid) is no
+    /// room: it also pushes out mesh bodies that are wholly inside. A detected solid is a room, so
+    /// declaring what was detected is a change. A declared [`Sheet`](SurfaceKind::Sheet) has no
+    /// inside.
     ///
     /// Holds for all meshes with this content while one of them is in use. One of more than 8192
-    /// triangles must be registered.
-    /// [`InsideOut`](SurfaceKind::InsideOut) is a solid with inward normals. Bodies in it are in a room.
+    /// triangles must be registered. [`InsideOut`](SurfaceKind::InsideOut) is a solid with inward
+    /// normals. Bodies in it are in a room.
     pub fn set_surface_kind(&self, kind: SurfaceKind) {
         self.0.data.declare_kind(kind);
     }

@@ -14,9 +14,9 @@ use crate::pair::{ConvexSearch, ConvexShape, MeshPlace};
 use crate::query::{MeshQuery, NonlinearCast, Query};
 
 impl SbbkDispatcher {
-    /// Calls `then` for two rigid meshes, or a mesh and a convex shape, and counts the search. Returns `None` if Parry
-    /// must answer. `apart` holds a distance, and the result for shapes whose boxes are farther apart.
-    /// `takes_balls`: true if SBBK answers for balls.
+    /// Calls `then` for two rigid meshes, or a mesh and a convex shape, and counts the search.
+    /// Returns `None` if Parry must answer. `apart` holds a distance, and the result for shapes
+    /// whose boxes are farther apart. `takes_balls`: true if SBBK answers for balls.
     fn search<T>(
         &self,
         pos12: &Pose,

@@ -3,9 +3,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Work that steps may spend on meshes that are not registered, in triangles. To build the tree of
 /// one triangle takes about 0.2 µs.
 ///
-/// Descents and searches without trees earn. A tree is built if there is enough; hashes and surfaces, which
-/// contacts depend on, are always computed and then charged. So the trees of one step take at most
-/// 2 ms, and none is built in a step that has many new meshes to analyse.
+/// Descents and searches without trees earn. A tree is built if there is enough; hashes and
+/// surfaces, which contacts depend on, are always computed and then charged. So the trees of one
+/// step take at most 2 ms, and none is built in a step that has many new meshes to analyse.
 #[derive(Debug)]
 pub(super) struct BuildBudget(AtomicU32);
 

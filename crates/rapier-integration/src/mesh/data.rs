@@ -10,9 +10,9 @@ use super::flags::TriangleFlags;
 use super::neighbours::Neighbours;
 use super::rays::MeshRays;
 
-/// Tree and surface of a mesh, for all colliders with equal geometry. A thread computes a part when the
-/// thread needs that part. Two threads may compute one tree or surface at once, and neither waits. Kind
-/// and tips are computed once, and other threads wait for these.
+/// Tree and surface of a mesh, for all colliders with equal geometry. A thread computes a part when
+/// the thread needs that part. Two threads may compute one tree or surface at once, and neither
+/// waits. Kind and tips are computed once, and other threads wait for these.
 #[derive(Default)]
 pub(crate) struct MeshData {
     /// Surface of an analysed mesh, and flags of its triangles.
@@ -69,7 +69,8 @@ impl MeshData {
         Ok(self.tree.set(tree).is_ok())
     }
 
-    /// Returns true if the mesh has not been analysed as a whole, and `find` finds that this is not needed.
+    /// Returns true if the mesh has not been analysed as a whole, and `find` finds that this is not
+    /// needed.
     pub(super) fn is_local(&self, find: impl FnOnce() -> bool) -> bool {
         self.analysed.get().is_none() && *self.is_local.get_or_init(find)
     }
@@ -104,7 +105,8 @@ impl MeshData {
         self.declared_kind().or_else(computed)
     }
 
-    /// Returns the kind of `mesh`, whose data this must be, from up to 4096 rays, and more at walls.
+    /// Returns the kind of `mesh`, whose data this must be, from up to 4096 rays, and more at
+    /// walls.
     pub(super) fn kind_by_rays(&self, mesh: &TriMesh) -> SurfaceKind {
         *self.kind.get_or_init(|| kind(&MeshRays(mesh)))
     }

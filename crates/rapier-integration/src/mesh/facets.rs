@@ -44,8 +44,8 @@ impl<'a> Twins<'a> {
     }
 }
 
-/// Least distance of a part that is alone from all others, in radii of the part. Higher: parts near each other take
-/// more rays. Lower: walls between parts have contacts, though rays pass these.
+/// Least distance of a part that is alone from all others, in radii of the part. Higher: parts near
+/// each other take more rays. Lower: walls between parts have contacts, though rays pass these.
 const ALONE: Real = 2.0e-4;
 
 impl MeshFacets<'_> {
@@ -69,7 +69,8 @@ impl MeshFacets<'_> {
         })
     }
 
-    /// Returns what counts as the side of a triangle. A double counts as a wall within, so it has no contacts.
+    /// Returns what counts as the side of a triangle. A double counts as a wall within, so it has
+    /// no contacts.
     #[inline]
     pub(super) fn declared_side(self, triangle: u32) -> Side {
         match self.declared {
@@ -102,7 +103,8 @@ impl MeshFacets<'_> {
         }
     }
 
-    /// Returns the first triangle at a hub or of a small component. If that triangle is a face, so are all.
+    /// Returns the first triangle at a hub or of a small component. If that triangle is a face, so
+    /// are all.
     fn first_of_group(self, triangle: u32) -> Option<u32> {
         let Twins::All(surface, _) = self.twins else { return None };
         let of_hub = surface.first_at_hub(*self.mesh.triangle(triangle).vertices());
@@ -208,12 +210,13 @@ impl Facets for MeshFacets<'_> {
     }
 }
 
-/// Greatest slope, as a sine, by which a surface may rise beside the point of an impact. Higher: walls stop bodies that
-/// slide along them. Lower: rounding hides impacts of parallel faces.
+/// Greatest slope, as a sine, by which a surface may rise beside the point of an impact. Higher:
+/// walls stop bodies that slide along them. Lower: rounding hides impacts of parallel faces.
 const IMPACT_RISE: f64 = 1.0e-4;
 
-/// Returns true if no triangle at the place of an impact leads towards the other body. `other` has the unit direction to that body,
-/// and its distance. The search takes triangles by their boxes and needs no twins.
+/// Returns true if no triangle at the place of an impact leads towards the other body. `other` has
+/// the unit direction to that body, and its distance. The search takes triangles by their boxes and
+/// needs no twins.
 pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, other: (DVec3, f64)) -> bool {
     let (known, memo) = (Neighbours::new(0), PlaceMemo::default());
     let twins = Twins::Near(&known);
@@ -271,7 +274,8 @@ mod tests {
         assert!(found > 1000 && doubles > 100 && slivers > 100, "{found} {doubles} {slivers}");
     }
 
-    /// Boxes are alone, touch, cross, or are within others. Would catch parts that share a wrong side.
+    /// Boxes are alone, touch, cross, or are within others. Would catch parts that share a wrong
+    /// side.
     #[test]
     fn sides_of_small_parts_are_those_that_rays_find() {
         let (mut random, mut counts) = (Rand32::new(2), [0; 4]);

@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{MinimumCones, Side};
 
-/// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], and its [`MinimumCones`].
+/// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], and its
+/// [`MinimumCones`].
 #[derive(Debug, Default)]
 pub(crate) struct TriangleFlags(AtomicU32);
 

@@ -2,19 +2,20 @@
 //!
 //! A dispatcher receives a `&TriMesh` without handle or version.
 //!
-//! * The address, for a [registered](super::store::Registered) mesh alone: memory is used again, and
-//!   `SharedShape::make_mut` edits in place.
+//! * The address, for a [registered](super::store::Registered) mesh alone: memory is used again,
+//!   and `SharedShape::make_mut` edits in place.
 //! * [`ContentHash`]: 128 bits over vertices, triangles, and the deformable flag. Meshes with equal
 //!   hashes share their data: clones, restored snapshots, the same file loaded twice. A hash takes
 //!   4 µs for 1000 triangles, so each pair computes one hash.
-//! * [`ContentHash::of_samples`], for a large unregistered mesh: a hash of addresses and samples. An edit of
-//!   few vertices in place may go unnoticed: the mesh then keeps its old neighbours and sides.
-//! * [`MeshToken`]: some words in constant time, compared at every query. If the token has changed, the
-//!   pair forgets the mesh.
+//! * [`ContentHash::of_samples`], for a large unregistered mesh: a hash of addresses and samples.
+//!   An edit of few vertices in place may go unnoticed: the mesh then keeps its old neighbours and
+//!   sides.
+//! * [`MeshToken`]: some words in constant time, compared at every query. If the token has changed,
+//!   the pair forgets the mesh.
 //!
-//! An edit by `TriMesh::update_vertices` that moves neither the root box nor a sampled vertex leaves
-//! the token as it was. Rapier drops the workspace of a pair when a shape was edited, and other hosts
-//! must do the same. Parry's own workspaces rely on it, too.
+//! An edit by `TriMesh::update_vertices` that moves neither the root box nor a sampled vertex
+//! leaves the token as it was. Rapier drops the workspace of a pair when a shape was edited, and
+//! other hosts must do the same. Parry's own workspaces rely on it, too.
 
 use std::hash::Hasher;
 
@@ -38,8 +39,8 @@ impl ContentHash {
 
     /// Hash of the addresses, sizes, flags and samples of a large mesh, in about 2 µs.
     pub(crate) fn of_samples(mesh: &TriMesh) -> Self {
-        /// Number of sampled vertices and triangles. Higher: more edits in place are noticed; lower:
-        /// each new pair is quicker.
+        /// Number of sampled vertices and triangles. Higher: more edits in place are noticed;
+        /// lower: each new pair is quicker.
         const SAMPLES: usize = 512;
         let (vertices, triangles) = (mesh.vertices(), mesh.indices());
         // One hash of a copy is three times as fast as a hash of sample after sample.
@@ -59,8 +60,8 @@ impl ContentHash {
 pub(crate) struct MeshToken([u32; Self::WORDS]);
 
 impl MeshToken {
-    /// Number of sampled vertices and triangles, evenly spread. Higher: more edits in place change the
-    /// token; lower: each query is quicker.
+    /// Number of sampled vertices and triangles, evenly spread. Higher: more edits in place change
+    /// the token; lower: each query is quicker.
     const SAMPLES: usize = 4;
     const WORDS: usize = 12 + 6 * Self::SAMPLES;
 

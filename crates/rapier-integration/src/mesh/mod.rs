@@ -1,5 +1,5 @@
-//! Triangle meshes during a query ([`view`]), from query to query of a pair ([`pair_mesh`]), and what
-//! all colliders of one mesh share ([`store`]).
+//! Triangle meshes during a query ([`view`]), from query to query of a pair ([`pair_mesh`]), and
+//! what all colliders of one mesh share ([`store`]).
 
 mod budget;
 mod data;

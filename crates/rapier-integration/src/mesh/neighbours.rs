@@ -15,8 +15,8 @@ use super::flags::TriangleFlags;
 /// The twins of the edges of a triangle, and its flags.
 #[derive(Debug, Default)]
 pub(super) struct Neighbour {
-    /// 0 before the search, 1 for none, else 2 more than the twin. The highest bits tell if the triangle is a double, and if it
-    /// has a double that is wound the other way.
+    /// 0 before the search, 1 for none, else 2 more than the twin. The highest bits tell if the
+    /// triangle is a double, and if it has a double that is wound the other way.
     twins: [AtomicU32; 3],
     pub(super) flags: TriangleFlags,
 }
@@ -46,7 +46,8 @@ impl Neighbour {
         self.has_highest(1)
     }
 
-    /// Finds the neighbours of a triangle in about 1 µs. Other threads may find the same ones meanwhile.
+    /// Finds the neighbours of a triangle in about 1 µs. Other threads may find the same ones
+    /// meanwhile.
     #[cold]
     fn find(&self, mesh: &TriMesh, triangle: u32) {
         let (twins, is_double) = twins(mesh, triangle);
@@ -59,11 +60,12 @@ impl Neighbour {
     }
 }
 
-/// Triangles at one end of an edge beyond which the other end is searched. Higher: fans take longer. Lower: edges between
-/// two fans take longer.
+/// Triangles at one end of an edge beyond which the other end is searched. Higher: fans take
+/// longer. Lower: edges between two fans take longer.
 const MOST_NEAR: usize = 64;
 
-/// Returns the triangles whose boxes hold both ends of an edge, and others at one end. Looks at an end with fewer than [`MOST_NEAR`].
+/// Returns the triangles whose boxes hold both ends of an edge, and others at one end. Looks at an
+/// end with fewer than [`MOST_NEAR`].
 fn near_edge(mesh: &TriMesh, ends: [Vector; 2]) -> Vec<u32> {
     for end in ends {
         let at = Aabb::new(end, end);
@@ -85,8 +87,8 @@ pub(super) fn is_two_sided(mesh: &TriMesh, triangle: u32) -> bool {
     near_edge(mesh, [a, b]).into_iter().any(|other| backs.contains(&corners(other)))
 }
 
-/// Returns the twins of the edges of a triangle, and whether it is a double. Vertices at one place are one vertex, and doubles
-/// have no neighbours, as in [`Surface`](sbbk_core::surface::Surface).
+/// Returns the twins of the edges of a triangle, and whether it is a double. Vertices at one place
+/// are one vertex, and doubles have no neighbours, as in [`Surface`](sbbk_core::surface::Surface).
 fn twins(mesh: &TriMesh, triangle: u32) -> ([Option<u32>; 3], bool) {
     let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
     let own = corners(triangle);
@@ -142,14 +144,16 @@ pub(super) fn places(corners: [Vector; 3]) -> [Place; 3] {
     places
 }
 
-/// Neighbours of triangles, found where something touches the mesh. Threads share them, and take no lock.
+/// Neighbours of triangles, found where something touches the mesh. Threads share them, and take no
+/// lock.
 #[derive(Debug)]
 pub(crate) struct Neighbours {
     chunks: Box<[OnceLock<Box<Chunk>>]>,
     chunk_count: AtomicUsize,
 }
 
-/// Triangles whose memory is reserved at once. Higher: more memory where few triangles are touched. Lower: a larger table.
+/// Triangles whose memory is reserved at once. Higher: more memory where few triangles are touched.
+/// Lower: a larger table.
 const CHUNK: usize = 64;
 
 type Chunk = [Neighbour; CHUNK];

@@ -40,8 +40,8 @@ pub(crate) struct RigidMesh {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Change {
     Unchanged,
-    /// First query, another store, a registration that changes what the mesh is taken for, or vertices that may
-    /// have moved. The triangles are the same.
+    /// First query, another store, a registration that changes what the mesh is taken for, or
+    /// vertices that may have moved. The triangles are the same.
     Unknown,
     /// The mesh is another one. Old manifolds refer to triangles that it does not have.
     Replaced,
@@ -75,11 +75,11 @@ impl PairMesh {
         change
     }
 
-    /// Returns the surface of a rigid mesh, with its [tree](LazySurface::tree) if there is one. Call
-    /// [`update`](Self::update) first.
+    /// Returns the surface of a rigid mesh, with its [tree](LazySurface::tree) if there is one.
+    /// Call [`update`](Self::update) first.
     ///
-    /// The first query does not look for an unregistered mesh: that takes a hash of all content, and
-    /// many pairs never touch. Later ones build the tree of a small mesh, if they need it.
+    /// The first query does not look for an unregistered mesh: that takes a hash of all content,
+    /// and many pairs never touch. Later ones build the tree of a small mesh, if they need it.
     pub(crate) fn acquire<'a>(
         &'a mut self,
         view: &'a MeshView<'a>,
@@ -149,10 +149,11 @@ impl<'a> LazySurface<'a> {
         self.data.get_or_init(|| self.view.store.entry(self.view.mesh))
     }
 
-    /// Returns true if triangles are analysed where something touches. This holds for large meshes, and for surely open ones.
+    /// Returns true if triangles are analysed where something touches. This holds for large meshes,
+    /// and for surely open ones.
     fn is_local(&self) -> bool {
-        /// Meshes up to this size are analysed as a whole. Higher: bodies come onto new terrains later. Lower: the search for a
-        /// border takes longer.
+        /// Meshes up to this size are analysed as a whole. Higher: bodies come onto new terrains
+        /// later. Lower: the search for a border takes longer.
         const LEAST: usize = 512;
         let (data, mesh) = (self.data(), self.view.mesh);
         data.is_local(|| {
@@ -183,8 +184,8 @@ impl<'a> LazySurface<'a> {
         MeshFacets { mesh, twins, memo: &self.memo, declared: self.kind_and_side().1 }
     }
 
-    /// Returns the kind of the mesh, and the [declared](MeshFacets::declared) side of its triangles. Analyses the mesh if it is
-    /// analysed as a whole.
+    /// Returns the kind of the mesh, and the [declared](MeshFacets::declared) side of its
+    /// triangles. Analyses the mesh if it is analysed as a whole.
     #[inline]
     fn kind_and_side(&self) -> (SurfaceKind, Option<Side>) {
         *self.declared.get_or_init(|| {
@@ -211,8 +212,9 @@ impl<'a> LazySurface<'a> {
         Around { facets, side: facets.declared_side(triangle) }
     }
 
-    /// Returns the triangle nearest to a point, and the nearest point. Also returns the cosine between the direction to
-    /// `point` and the normal that leads into the body. Leaves out triangles that do not bound the body of a closed mesh.
+    /// Returns the triangle nearest to a point, and the nearest point. Also returns the cosine
+    /// between the direction to `point` and the normal that leads into the body. Leaves out
+    /// triangles that do not bound the body of a closed mesh.
     pub(crate) fn nearest(&self, point: Vec3) -> Option<(u32, Vec3, Real)> {
         let kind = self.kind();
         let bounds_nothing = |triangle| match self.around(triangle).side {
@@ -225,9 +227,10 @@ impl<'a> LazySurface<'a> {
         Some((triangle, nearest, if is_turned { -behind } else { behind }))
     }
 
-    /// Returns the sign of the winding number around a [covered](super::is_covered) point: 1 within a body, -1 within faces that
-    /// lead inwards, 0 elsewhere and for a sheet. `None` if rays disagree. The nearest triangle cannot tell the sign, as it may
-    /// be of a part that pierces the surface.
+    /// Returns the sign of the winding number around a [covered](super::is_covered) point: 1 within
+    /// a body, -1 within faces that lead inwards, 0 elsewhere and for a sheet. `None` if rays
+    /// disagree. The nearest triangle cannot tell the sign, as it may be of a part that pierces the
+    /// surface.
     pub(crate) fn winding_sign(&self, point: Vec3) -> Option<i32> {
         let is_closed = self.kind() != SurfaceKind::Sheet;
         if is_closed { self.facets().winding_sign(point) } else { Some(0) }
@@ -301,7 +304,8 @@ mod tests {
         [!surface.is_local(), surface.kind() == SurfaceKind::Solid]
     }
 
-    /// Would catch terrains that cost their first contact a look at all triangles, and others without that look.
+    /// Would catch terrains that cost their first contact a look at all triangles, and others
+    /// without that look.
     #[test]
     fn open_terrains_are_analysed_where_something_touches() {
         let store = store();
@@ -341,8 +345,9 @@ mod tests {
         assert_eq!(surface(&mut known, &store, mesh), [false, true]);
     }
 
-    /// Fails if a query takes a lock though the pair has its meshes, or drops one under a lock. Another registration must not make
-    /// pairs search for large meshes, as that hashes the content.
+    /// Fails if a query takes a lock though the pair has its meshes, or drops one under a lock.
+    /// Another registration must not make pairs search for large meshes, as that hashes the
+    /// content.
     #[test]
     fn a_pair_that_has_its_meshes_takes_no_lock() {
         let (store, meshes) = (store(), [6, 100].map(|rows| mesh(rows, TriMeshFlags::empty())));

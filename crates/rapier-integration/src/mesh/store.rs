@@ -124,8 +124,8 @@ impl MeshStore {
         Ok(registered)
     }
 
-    /// Returns the registration of a mesh. Hashes the content of a large mesh if one of as many triangles is registered
-    /// without a shape.
+    /// Returns the registration of a mesh. Hashes the content of a large mesh if one of as many
+    /// triangles is registered without a shape.
     pub(crate) fn registered(&self, mesh: &TriMesh) -> Option<Arc<Registered>> {
         let meshes = self.registered.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = meshes.shapes.get(&address(mesh)).and_then(Weak::upgrade) {
@@ -172,8 +172,9 @@ impl MeshStore {
         data
     }
 
-    /// Returns the data of a small mesh, if its tree is there or the budget covers the tree. Charges no hash: queries
-    /// without a workspace compute one each time, and would never save up for a tree.
+    /// Returns the data of a small mesh, if its tree is there or the budget covers the tree.
+    /// Charges no hash: queries without a workspace compute one each time, and would never save up
+    /// for a tree.
     pub(super) fn small_with_tree(&self, mesh: &TriMesh) -> Option<Arc<MeshData>> {
         let is_small = is_small(mesh.indices().len());
         let data = is_small.then(|| self.entry_of(ContentHash::of(mesh)))?;
@@ -287,8 +288,8 @@ impl Contents {
     }
 }
 
-/// Least number of triangles of both meshes for which a pair uses trees. Higher: slower descents. Lower: all of a mesh in a room is near
-/// the box of a leaf with four walls.
+/// Least number of triangles of both meshes for which a pair uses trees. Higher: slower descents.
+/// Lower: all of a mesh in a room is near the box of a leaf with four walls.
 const LEAST_FOR_TREES: usize = 64;
 
 /// True if two meshes have enough triangles for trees. Parry's BVHs serve others.
@@ -383,7 +384,8 @@ mod tests {
         assert!(store.registered(mesh).is_some());
     }
 
-    /// Would catch a count that rises though nothing changed: every pair of a world then searches again.
+    /// Would catch a count that rises though nothing changed: every pair of a world then searches
+    /// again.
     #[test]
     fn registrations_that_change_nothing_are_not_counted() {
         let store = store(0);

@@ -52,13 +52,15 @@ impl<'a> TwoMeshes<'a> {
         }
     }
 
-    /// Returns true if nothing of the larger mesh is within `margin` of the box around the other one.
+    /// Returns true if nothing of the larger mesh is within `margin` of the box around the other
+    /// one.
     pub(crate) fn are_apart(&self, margin: Real) -> bool {
         let Self { larger, pose, root, is_valid, .. } = self;
         *is_valid && !has_near(larger, &root.transform_by(pose), pose, margin)
     }
 
-    /// True if the larger mesh [covers](is_covered) the box around the smaller one. A closed mesh covers all that is in it.
+    /// True if the larger mesh [covers](is_covered) the box around the smaller one. A closed mesh
+    /// covers all that is in it.
     pub(crate) fn may_be_inside(&self) -> bool {
         is_box_covered(self.larger, &self.root.transform_by(&self.pose))
     }
@@ -93,11 +95,12 @@ fn is_box_covered(mesh: &TriMesh, aabb: &Aabb) -> bool {
     })
 }
 
-/// Cosine of [`nearest`] from which a point counts as inside. Points next to a reflex edge may have less.
+/// Cosine of [`nearest`] from which a point counts as inside. Points next to a reflex edge may have
+/// less.
 pub(crate) const BEHIND: Real = 0.9;
 
-/// Returns the nearest triangle of a mesh, the nearest point, and the cosine between the direction to `point` and the inward
-/// normal. The cosine is 0 for a point on the mesh.
+/// Returns the nearest triangle of a mesh, the nearest point, and the cosine between the direction
+/// to `point` and the inward normal. The cosine is 0 for a point on the mesh.
 pub(super) fn nearest(
     mesh: &TriMesh,
     point: Vec3,
@@ -117,8 +120,8 @@ pub(super) fn nearest(
     Some((triangle, nearest, behind))
 }
 
-/// Returns the first triangle that a ray meets within a length, and where. Faster than Parry's cast with a normal, which divides
-/// for each box.
+/// Returns the first triangle that a ray meets within a length, and where. Faster than Parry's cast
+/// with a normal, which divides for each box.
 pub(crate) fn first_hit(mesh: &TriMesh, ray: &Ray, within: Real) -> Option<(u32, RayIntersection)> {
     let hit =
         |triangle| mesh.triangle(triangle).cast_local_ray_and_get_normal(ray, Real::MAX, false);
@@ -127,12 +130,13 @@ pub(crate) fn first_hit(mesh: &TriMesh, ray: &Ray, within: Real) -> Option<(u32,
     Some((triangle, hit(triangle)?))
 }
 
-/// Places where a ray meets a mesh, at most. At least half as many nearest ones are found. Higher: more memory; lower: overlaps of
-/// many layers are less deep.
+/// Places where a ray meets a mesh, at most. At least half as many nearest ones are found. Higher:
+/// more memory; lower: overlaps of many layers are less deep.
 const MOST_HITS: usize = 64;
 
-/// Returns true if a ray that starts in a shape leaves it where it meets a triangle. `outward` is the sign with which normals
-/// lead out of a solid; `None` for a sheet, which may be left on both sides.
+/// Returns true if a ray that starts in a shape leaves it where it meets a triangle. `outward` is
+/// the sign with which normals lead out of a solid; `None` for a sheet, which may be left on both
+/// sides.
 pub(crate) fn leaves(hit: &RayIntersection, outward: Option<f64>) -> bool {
     // Parry calls the back face 1.
     let is_back = hit.feature == FeatureId::Face(1);
@@ -144,8 +148,8 @@ fn is_valid(aabb: &Aabb) -> bool {
     aabb.mins.is_finite() && aabb.maxs.is_finite() && aabb.mins.cmple(aabb.maxs).all()
 }
 
-/// True if the BVH of a mesh has a triangle within `margin` of a box, or a little farther. `aabb` was
-/// placed at `pos12`.
+/// True if the BVH of a mesh has a triangle within `margin` of a box, or a little farther. `aabb`
+/// was placed at `pos12`.
 fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
     // Some 30 operations on coordinates up to twice these.
     let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
@@ -166,8 +170,8 @@ pub(crate) struct MeshView<'a> {
 }
 
 impl MeshStore {
-    /// Returns a view of a mesh for one query. `None` if the box around the mesh is not finite, or if there are no
-    /// triangles. Only Parry can answer then.
+    /// Returns a view of a mesh for one query. `None` if the box around the mesh is not finite, or
+    /// if there are no triangles. Only Parry can answer then.
     #[inline]
     pub(crate) fn view<'a>(&'a self, mesh: &'a TriMesh) -> Option<MeshView<'a>> {
         let root = mesh.bvh().root_aabb();
@@ -203,8 +207,8 @@ impl<'a> MeshView<'a> {
         self.root.half_extents().length_squared()
     }
 
-    /// Returns the box around the mesh at `pose`, grown by `reach` and by rounding. A pose that is not
-    /// finite gives a box that overlaps nothing.
+    /// Returns the box around the mesh at `pose`, grown by `reach` and by rounding. A pose that is
+    /// not finite gives a box that overlaps nothing.
     pub(crate) fn placed_root(&self, pose: &Pose, reach: Real) -> Aabb {
         let size = self.root.half_extents().length() + self.root.center().length();
         let grown = reach + gamma(64) * (size + pose.translation.length() + reach);
@@ -236,9 +240,11 @@ impl<'a> MeshView<'a> {
         tips
     }
 
-    /// Returns true if an edge at a tip of the mesh has one triangle: the mesh has a border. A look at a few tips may miss one.
+    /// Returns true if an edge at a tip of the mesh has one triangle: the mesh has a border. A look
+    /// at a few tips may miss one.
     pub(super) fn has_bare_edge(&self) -> bool {
-        /// Tips that are looked at. Higher: slower for closed meshes. Lower: slower for sheets whose borders are not at these.
+        /// Tips that are looked at. Higher: slower for closed meshes. Lower: slower for sheets
+        /// whose borders are not at these.
         const LOOKED_AT: usize = 3;
         let tips = tip_directions().take(LOOKED_AT);
         tips.map(|direction| self.lowest_corner(direction).1).any(|tip| {
@@ -253,7 +259,8 @@ impl<'a> MeshView<'a> {
         })
     }
 
-    /// Returns the least coordinate of the mesh along a direction, and the half-edge that begins there.
+    /// Returns the least coordinate of the mesh along a direction, and the half-edge that begins
+    /// there.
     fn lowest_corner(&self, direction: Vec3) -> (Real, u32) {
         let least = Cell::new((Real::INFINITY, 0));
         let bound =
@@ -269,8 +276,8 @@ impl<'a> MeshView<'a> {
         least.get()
     }
 
-    /// Height of the mesh over the middle of its box along a unit direction, or of the box if that is
-    /// less than `enough`.
+    /// Height of the mesh over the middle of its box along a unit direction, or of the box if that
+    /// is less than `enough`.
     pub(crate) fn height(&self, direction: Vec3, enough: Real) -> Real {
         let of_box = direction.abs().dot(self.root.half_extents());
         if of_box <= enough {
@@ -290,7 +297,8 @@ impl<'a> MeshView<'a> {
         Sphere { centre, radius: half + gamma(8) * (centre.length() + half) }
     }
 
-    /// Returns the distance of a point to the mesh, up to rounding; `None` if the box of a triangle is within `least` of the point.
+    /// Returns the distance of a point to the mesh, up to rounding; `None` if the box of a triangle
+    /// is within `least` of the point.
     pub(crate) fn distance_beyond(&self, point: Vec3, least: Real) -> Option<Real> {
         let is_within = |node: &BvhNode| node.aabb().distance_to_local_point(point, true) <= least;
         if self.mesh.bvh().leaves(is_within).next().is_some() {
@@ -300,8 +308,9 @@ impl<'a> MeshView<'a> {
         Some(nearest.distance(point))
     }
 
-    /// Returns the distance in which a ray from a point inside leaves the mesh, and the outward normal there. A solid goes on
-    /// while the ray is in one of its parts, which may overlap. `None` if the ray does not leave. See [`leaves`].
+    /// Returns the distance in which a ray from a point inside leaves the mesh, and the outward
+    /// normal there. A solid goes on while the ray is in one of its parts, which may overlap.
+    /// `None` if the ray does not leave. See [`leaves`].
     pub(crate) fn exit(&self, ray: &Ray, outward: Option<f64>) -> Option<(Real, Vec3)> {
         // Rounding parts the triangles at an edge.
         let rounding = 64.0 * Real::EPSILON * self.magnitude();
@@ -408,7 +417,8 @@ mod tests {
             .unwrap()
     }
 
-    /// Closed forms. Would catch solids that end where one part begins in another, or at an edge of two triangles.
+    /// Closed forms. Would catch solids that end where one part begins in another, or at an edge of
+    /// two triangles.
     #[test]
     fn a_ray_leaves_a_solid_after_its_last_part() {
         let cases: [(&[[Real; 2]], Option<Real>); 7] = [

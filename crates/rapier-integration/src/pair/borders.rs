@@ -1,11 +1,13 @@
 //! Contacts at the borders of meshes.
 //!
-//! A body that slides from one floor onto the next has sunk in a little, and would run into the border of the
-//! next floor. So a border is met along the normal of its face by a body that is all on one side of the face. Before
-//! the body touches the border, that way leads past it, and the border has no contact.
+//! A body that slides from one floor onto the next has sunk in a little, and would run into the
+//! border of the next floor. So a border is met along the normal of its face by a body that is all
+//! on one side of the face. Before the body touches the border, that way leads past it, and the
+//! border has no contact.
 //!
-//! The rim of an open box has borders, too. A lid just fits between its walls: it is on the inner side
-//! of each. But the normals of walls lead against each other, so no way is left, and the rim carries the lid.
+//! The rim of an open box has borders, too. A lid just fits between its walls: it is on the inner
+//! side of each. But the normals of walls lead against each other, so no way is left, and the rim
+//! carries the lid.
 
 use glamx::DVec3;
 use sbbk_core::contact::TriangleContact;
@@ -13,8 +15,8 @@ use sbbk_core::contact::TriangleContact;
 use super::query::ContactList;
 use super::shapes::{NEAR_NORMAL, TriangleSurfaceContact};
 
-/// Returns true if the way along the normal of a face leads past its border. `distance`: to the border. `cosine`: between the way to
-/// the border and the normal.
+/// Returns true if the way along the normal of a face leads past its border. `distance`: to the
+/// border. `cosine`: between the way to the border and the normal.
 pub(super) fn is_past_border(distance: f64, cosine: f64) -> bool {
     distance > 0.0 && cosine < NEAR_NORMAL
 }
@@ -25,8 +27,8 @@ pub(super) fn lead_one_way(mut normals: impl Iterator<Item = DVec3> + Clone) -> 
     normals.all(|normal| normal.dot(sum) > 0.0)
 }
 
-/// Gives contacts at borders the normals of the faces, if these lead one way, and returns true then. Removes those that lead
-/// [past a border](is_past_border). Both lists have one order.
+/// Gives contacts at borders the normals of the faces, if these lead one way, and returns true
+/// then. Removes those that lead [past a border](is_past_border). Both lists have one order.
 pub(super) fn meet_borders(
     upright: &ContactList<DVec3>,
     contacts: &mut ContactList<TriangleSurfaceContact>,

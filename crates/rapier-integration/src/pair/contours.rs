@@ -1,8 +1,9 @@
 //! Ways out of overlaps. A sheet counts as the surface of a solid here.
 //!
-//! Two solids that overlap cross along a closed contour, and leave each other the shortest way. An overlap shrinks fastest along
-//! the area vector of its contour. Contacts are at points of the contour and in its middle, as the deepest triangles
-//! may have passed each other and cross no more.
+//! Two solids that overlap cross along a closed contour, and leave each other the shortest way. An
+//! overlap shrinks fastest along the area vector of its contour. Contacts are at points of the
+//! contour and in its middle, as the deepest triangles may have passed each other and cross no
+//! more.
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;
@@ -15,24 +16,26 @@ use super::shapes::{TriangleShapes, TriangleSurfaceContact};
 use super::surface::ALONG_NORMAL;
 use super::ways::SAME_SIDE;
 
-/// Least area vector of a contour, as a share of the area that its segments sweep around the middle. Higher:
-/// bodies that hook into each other keep the contacts of their triangles. Lower: contours push nowhere.
+/// Least area vector of a contour, as a share of the area that its segments sweep around the
+/// middle. Higher: bodies that hook into each other keep the contacts of their triangles. Lower:
+/// contours push nowhere.
 const COHERENT: f64 = 0.5;
 
 /// Distance from a contour to its points, as a share of its length. Higher: overlaps beside sharp
 /// edges are left out. Lower: rays meet the surface where they start.
 const INSET: f64 = 1.0e-3;
 
-/// Greatest gap of a closed contour, and distance of a flat one from its plane, as a share of its length. Higher: contours
-/// of surfaces with holes are closed, and those around edges flat. Lower: soups have no contours, and rounding makes flat
-/// faces uneven.
+/// Greatest gap of a closed contour, and distance of a flat one from its plane, as a share of its
+/// length. Higher: contours of surfaces with holes are closed, and those around edges flat. Lower:
+/// soups have no contours, and rounding makes flat faces uneven.
 const UNEVEN: f64 = 1e-3;
 
-/// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all their way. Lower: bodies deep
-/// in others turn and sink.
+/// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all
+/// their way. Lower: bodies deep in others turn and sink.
 const DEPTH_PER_LENGTH: f64 = 0.5;
 
-/// Greatest number of points of a contour. Higher: more time; lower: bodies turn about the chosen ones.
+/// Greatest number of points of a contour. Higher: more time; lower: bodies turn about the chosen
+/// ones.
 const CONTOUR_POINTS: usize = 6;
 
 /// A part of a contour, where two triangles cross.
@@ -129,8 +132,8 @@ impl<'s> Contour<'s> {
         })
     }
 
-    /// Returns points of the overlap, with segments that stand for them: the middle, and points far from each other at
-    /// the contour. Only ties depend on the order of the segments.
+    /// Returns points of the overlap, with segments that stand for them: the middle, and points far
+    /// from each other at the contour. Only ties depend on the order of the segments.
     fn points(&self) -> Points<'s> {
         let from_middle = |one: &Segment| one.middle().distance_squared(self.middle);
         let nearest = self.segments.iter().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
@@ -200,7 +203,8 @@ pub(super) fn find_ways(
 }
 
 impl<'a> Overlap<'a> {
-    /// Sheets may be left through both sides. So may shapes with triangles that are wound unlike the others.
+    /// Sheets may be left through both sides. So may shapes with triangles that are wound unlike
+    /// the others.
     fn of(shapes: &'a TriangleShapes<'a>, island: &[Crossing]) -> Self {
         let is_uniform =
             |i: usize, crossing: &Crossing| crossing.outward[i] == Some(shapes[i].outward());
@@ -208,9 +212,10 @@ impl<'a> Overlap<'a> {
         Self { shapes, is_two_way }
     }
 
-    /// Returns the shortest way by which shape 2 leaves an overlap, and whether the way is exact. Exact ways are the normal of two
-    /// faces across from each other, and the area vector of a flat contour. Other ways are the area vector, and the normals
-    /// where it leads out from the middle. Directions from the middle to the nearest points of both surfaces are tried as well.
+    /// Returns the shortest way by which shape 2 leaves an overlap, and whether the way is exact.
+    /// Exact ways are the normal of two faces across from each other, and the area vector of a flat
+    /// contour. Other ways are the area vector, and the normals where it leads out from the middle.
+    /// Directions from the middle to the nearest points of both surfaces are tried as well.
     fn way_across(&self, contour: &Contour, points: &Points) -> Option<(Way, bool)> {
         let Contour { length, middle, normal, is_flat, .. } = *contour;
         let most = DEPTH_PER_LENGTH * length;
@@ -228,8 +233,8 @@ impl<'a> Overlap<'a> {
         Some((shortest?, false))
     }
 
-    /// Returns the way along a direction. `None` if the direction leads out from no point, or if the way is not shorter than
-    /// a limit.
+    /// Returns the way along a direction. `None` if the direction leads out from no point, or if
+    /// the way is not shorter than a limit.
     fn way_along(&self, normal: DVec3, points: &Points, limit: f64) -> Option<Way> {
         let (mut length, mut exits) = (f64::NEG_INFINITY, ArrayVec::new());
         for (_, point) in points {
@@ -243,7 +248,8 @@ impl<'a> Overlap<'a> {
         (length >= 0.0).then_some(Way { normal, length, exits })
     }
 
-    /// Returns directions in which the nearest points of both surfaces lead shape 2 out. `point` is in both solids.
+    /// Returns directions in which the nearest points of both surfaces lead shape 2 out. `point` is
+    /// in both solids.
     fn nearest_ways(&self, point: DVec3) -> impl Iterator<Item = DVec3> {
         let (point, pos12) = (point.as_vec3(), self.shapes.pose.pos12);
         let to_nearest = |i: usize, point| Some(self.shapes[i].nearest(point)?.0 - point);
@@ -252,8 +258,8 @@ impl<'a> Overlap<'a> {
         ways.into_iter().flatten().map(|way| way.as_dvec3().normalize_or_zero())
     }
 
-    /// Returns where shape 1 ends along a direction, and shape 2 against it, seen from a point in both solids: distances,
-    /// and outward normals in frame 1.
+    /// Returns where shape 1 ends along a direction, and shape 2 against it, seen from a point in
+    /// both solids: distances, and outward normals in frame 1.
     fn exits(&self, point: DVec3, direction: DVec3) -> Option<[(f64, DVec3); 2]> {
         let PairPose { pos12, .. } = self.shapes.pose;
         let (point, direction) = (point.as_vec3(), direction.as_vec3());
@@ -267,8 +273,9 @@ impl<'a> Overlap<'a> {
         Some(exits.map(|(length, normal)| (f64::from(length), normal.as_dvec3())))
     }
 
-    /// Returns the contact across an overlap at a point in both solids. `normal` is in frame 1, and `exits` are the
-    /// distances from the point to where shape 1 ends along the normal, and shape 2 against it.
+    /// Returns the contact across an overlap at a point in both solids. `normal` is in frame 1, and
+    /// `exits` are the distances from the point to where shape 1 ends along the normal, and shape 2
+    /// against it.
     fn contact_across(
         &self,
         pair: [u32; 2],

@@ -1,15 +1,15 @@
 //! Descents to the candidates of two shapes made of triangles.
 //!
-//! Two rigid meshes with trees descend both trees. Two others descend Parry's BVHs. A mesh and a height field
-//! visit Parry's BVH of the mesh and read the cells under it ([`sbbk_core::field`]).
+//! Two rigid meshes with trees descend both trees. Two others descend Parry's BVHs. A mesh and a
+//! height field visit Parry's BVH of the mesh and read the cells under it ([`sbbk_core::field`]).
 //!
 //! A descent of BVHs first finds the triangles of the larger mesh near the box of the other. Many
-//! descents end here. Groups of such triangles descend the other BVH until something is near. Then each
-//! four of a group descend.
+//! descents end here. Groups of such triangles descend the other BVH until something is near. Then
+//! each four of a group descend.
 //!
-//! Rapier hands out pairs in blocks of 64, so few heavy pairs would run on one thread. With the feature `parallel`, a
-//! heavy pair is split into chunks for the threads of the host's pool. Results are joined in the order of chunks, so they
-//! have the same bits on any number of threads.
+//! Rapier hands out pairs in blocks of 64, so few heavy pairs would run on one thread. With the
+//! feature `parallel`, a heavy pair is split into chunks for the threads of the host's pool.
+//! Results are joined in the order of chunks, so they have the same bits on any number of threads.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -31,35 +31,38 @@ use super::query::Candidate;
 use super::shapes::{DISTANT, Hint, NEAR_NORMAL, TriangleShape, TriangleShapes};
 use crate::mesh::MeshView;
 
-/// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body of one length unit has a
-/// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
-/// lower: bodies come deeper into others before they meet.
+/// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body
+/// of one length unit has a radius of half a unit, and Rapier predicts 0.02 units by default.
+/// Higher: fine meshes cost more; lower: bodies come deeper into others before they meet.
 const REACH: f64 = 0.4;
 
-/// Least reach of fine meshes in filter distances: 0.01 radii. Higher: fine meshes cost more; lower: bodies turn and sink where
-/// they are pressed together.
+/// Least reach of fine meshes in filter distances: 0.01 radii. Higher: fine meshes cost more;
+/// lower: bodies turn and sink where they are pressed together.
 const LEAST_REACH: f64 = 0.1;
 
-/// Reach of fine meshes in sizes of their triangles. Higher: each triangle is near more others. Lower: meshes of a few thousand triangles
-/// have contacts late.
+/// Reach of fine meshes in sizes of their triangles. Higher: each triangle is near more others.
+/// Lower: meshes of a few thousand triangles have contacts late.
 const REACH_PER_TRIANGLE: f64 = 0.25;
 
-/// The reach by triangle size is used if it is below this share of the other reach. Higher: far contacts take more time than
-/// the smaller reach saves. Lower: fine meshes cost more.
+/// The reach by triangle size is used if it is below this share of the other reach. Higher: far
+/// contacts take more time than the smaller reach saves. Lower: fine meshes cost more.
 const MUCH_LESS: f64 = 0.75;
 
-/// Greatest product of the numbers of triangles near the other shape with which all pairs are candidates.
-/// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
+/// Greatest product of the numbers of triangles near the other shape with which all pairs are
+/// candidates. Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD
+/// turn through sheets.
 const MOST_PAIRS: usize = 1 << 14;
 
-/// Pairs of nodes or a few more at which the chunks of a descent start. Higher: fewer descents are split; lower: one
-/// chunk may have all that is near.
+/// Pairs of nodes or a few more at which the chunks of a descent start. Higher: fewer descents are
+/// split; lower: one chunk may have all that is near.
 const STARTS: usize = 1024;
 
-/// Least number of node pairs in a chunk. Higher: one chunk may have all that is near; lower: chunks of microseconds.
+/// Least number of node pairs in a chunk. Higher: one chunk may have all that is near; lower:
+/// chunks of microseconds.
 const LEAST_STARTS: usize = 32;
 
-/// Least number of triangles of the larger mesh in a chunk of a BVH descent. Higher, lower: see [`LEAST_STARTS`].
+/// Least number of triangles of the larger mesh in a chunk of a BVH descent. Higher, lower: see
+/// [`LEAST_STARTS`].
 const LEAST_NEAR: usize = 64;
 
 /// Memory for descents.
@@ -122,8 +125,8 @@ impl TriangleShapes<'_> {
         mesh.view.mesh.indices().len() as f64 * under <= MOST_PAIRS as f64
     }
 
-    /// Returns a test for triangles beside each other. Their contacts are no local minima while candidates within `margin`
-    /// serve, where the surface [bends little](Self::bends_little).
+    /// Returns a test for triangles beside each other. Their contacts are no local minima while
+    /// candidates within `margin` serve, where the surface [bends little](Self::bends_little).
     pub(super) fn lateral_culling(&self, margin: Real) -> Option<LateralCulling> {
         let reach = self.reach();
         let is_filtered = f64::from(reach) <= self.filter_distance;
@@ -133,8 +136,8 @@ impl TriangleShapes<'_> {
         })
     }
 
-    /// Returns true if contacts beside a triangle of shape `i`, by [lateral culling](Self::lateral_culling), are no local
-    /// minima. False for height fields.
+    /// Returns true if contacts beside a triangle of shape `i`, by [lateral
+    /// culling](Self::lateral_culling), are no local minima. False for height fields.
     pub(super) fn bends_little(&self, i: usize, triangle: u32) -> bool {
         let Some(surface) = self[i].surface() else { return false };
         surface.facets().cones(triangle).least_square(false) >= NEAR_NORMAL * NEAR_NORMAL
@@ -249,14 +252,15 @@ impl TriangleShapes<'_> {
         counts.cells += frame.cells.get();
     }
 
-    /// Returns the surfaces that are known by now and have doubles. A descent may leave these out, as they have no contacts.
+    /// Returns the surfaces that are known by now and have doubles. A descent may leave these out,
+    /// as they have no contacts.
     fn doubles(&self) -> [Option<&Surface>; 2] {
         self.shapes.each_ref().map(|shape| shape.surface()?.with_doubles())
     }
 }
 
-/// Returns true if few pairs of triangles of two meshes may be within the prediction distance. `poses` has each mesh's partner
-/// in the frame of the mesh.
+/// Returns true if few pairs of triangles of two meshes may be within the prediction distance.
+/// `poses` has each mesh's partner in the frame of the mesh.
 fn are_few_of_meshes(meshes: [&MeshView<'_>; 2], poses: [Pose; 2], prediction: Real) -> bool {
     let count = |i: usize, most: usize| {
         let around = meshes[1 - i].placed_root(&poses[i], prediction);
@@ -297,7 +301,8 @@ pub(crate) struct BvhDescent<'a> {
 }
 
 impl<'a> BvhDescent<'a> {
-    /// A descent to all pairs of triangles within `margin`, without some beside each other if `lateral` is set.
+    /// A descent to all pairs of triangles within `margin`, without some beside each other if
+    /// `lateral` is set.
     pub(crate) fn new(
         meshes: [&'a MeshView<'a>; 2],
         placement12: Placement,
@@ -329,8 +334,8 @@ impl<'a> BvhDescent<'a> {
         counts.aabb_tests += tested.get();
     }
 
-    /// Calls `found` with the pairs of triangles in `near`, in any order, until it breaks. `may_reject` returns true if pairs
-    /// beside a triangle of mesh 1 (0) or 2 (1) may be left out.
+    /// Calls `found` with the pairs of triangles in `near`, in any order, until it breaks.
+    /// `may_reject` returns true if pairs beside a triangle of mesh 1 (0) or 2 (1) may be left out.
     pub(crate) fn pairs(
         &self,
         near: &[u32],

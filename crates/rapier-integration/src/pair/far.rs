@@ -1,12 +1,12 @@
 //! Far contacts of two shapes made of triangles: what may be hit in the next step, but is not near.
 //!
-//! A host asks for them where a body is small beside the prediction distance, or fast and has soft CCD.
-//! Fine meshes only have contacts from their tips to the nearest points of the other shape. Rays from up to 128 triangles of each
-//! mesh find obstacles ahead. Walks add the places
-//! where shapes are nearest to each other. A walk goes from a point of one shape to the nearest point of the other,
-//! and back. It may end at another place. Shapes of few triangles that nearly touch keep all contacts in the
-//! directions of local minima. Others keep the local minima
-//! of the larger shape; without any, they keep all contacts.
+//! A host asks for them where a body is small beside the prediction distance, or fast and has soft
+//! CCD. Fine meshes only have contacts from their tips to the nearest points of the other shape.
+//! Rays from up to 128 triangles of each mesh find obstacles ahead. Walks add the places where
+//! shapes are nearest to each other. A walk goes from a point of one shape to the nearest point of
+//! the other, and back. It may end at another place. Shapes of few triangles that nearly touch keep
+//! all contacts in the directions of local minima. Others keep the local minima of the larger
+//! shape; without any, they keep all contacts.
 
 use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::BoundingVolume;
@@ -21,27 +21,29 @@ use super::shapes::{NEAR_NORMAL, TriangleHit, TriangleShapes, TriangleSurfaceCon
 use super::surface::{SurfaceFilter, Verdict};
 use crate::mesh::LazySurface;
 
-/// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
-/// parallel; lower: the contact is farther than the nearest one.
+/// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that
+/// are nearly parallel; lower: the contact is farther than the nearest one.
 const STEPS_TO_NEAREST: usize = 32;
 
-/// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher: thin plates with
-/// soft CCD turn through sheets. Lower: small bodies are stopped by triangles ahead.
+/// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher:
+/// thin plates with soft CCD turn through sheets. Lower: small bodies are stopped by triangles
+/// ahead.
 const SAME_FAR_DIRECTION: f64 = 0.97;
 
-/// Triangles of each mesh from which rays look ahead. Higher: more time. Lower: small parts of fine meshes are met late.
+/// Triangles of each mesh from which rays look ahead. Higher: more time. Lower: small parts of fine
+/// meshes are met late.
 const RAYS_AHEAD: usize = 128;
 
-/// Square of the ratio of sizes from which the larger mesh does not look ahead. Higher: slow on large terrains. Lower: small parts
-/// meet the teeth of larger ones late.
+/// Square of the ratio of sizes from which the larger mesh does not look ahead. Higher: slow on
+/// large terrains. Lower: small parts meet the teeth of larger ones late.
 const MUCH_LARGER: Real = 16.0;
 
 /// Least cosine of directions that are one. Higher: more time.
 const ONE_DIRECTION: f64 = 0.99;
 
 impl TriangleShapes<'_> {
-    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way`: contacts that lead
-    /// past borders do not count.
+    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way`:
+    /// contacts that lead past borders do not count.
     pub(super) fn add_far(
         &self,
         is_apart: bool,
@@ -71,10 +73,11 @@ impl TriangleShapes<'_> {
         }
     }
 
-    /// Removes most contacts beyond the filter distance. If a contact is near, far ones stay in the directions of near contacts and
-    /// of local minima. Between shapes that cross, those that lead into solids go, as they would hold the shapes in each other. If
-    /// no contact is near, only local minima of the larger shape stay. Shapes without such a minimum keep all contacts, as the smaller
-    /// one may turn before both meet. `directions` is memory.
+    /// Removes most contacts beyond the filter distance. If a contact is near, far ones stay in the
+    /// directions of near contacts and of local minima. Between shapes that cross, those that lead
+    /// into solids go, as they would hold the shapes in each other. If no contact is near, only
+    /// local minima of the larger shape stay. Shapes without such a minimum keep all contacts, as
+    /// the smaller one may turn before both meet. `directions` is memory.
     pub(super) fn thin_out_far(
         &self,
         directions: &mut Vec<DVec3>,
@@ -112,8 +115,9 @@ impl TriangleShapes<'_> {
         });
     }
 
-    /// Calls `found` with the contacts of tips, and with those one step of a walk farther, which may be near.
-    /// Shapes that are apart also get the contacts where walks from the nearest tips and from the middles end.
+    /// Calls `found` with the contacts of tips, and with those one step of a walk farther, which
+    /// may be near. Shapes that are apart also get the contacts where walks from the nearest tips
+    /// and from the middles end.
     fn find_far(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
         if !self.pose.placement12.is_finite() {
             return;
@@ -141,8 +145,8 @@ impl TriangleShapes<'_> {
         self.find_ahead(&mut found);
     }
 
-    /// Calls `found` with the contacts of triangles and what lies straight in front of them, for some triangles spread over each
-    /// mesh. Sides that touch may hide them from walks.
+    /// Calls `found` with the contacts of triangles and what lies straight in front of them, for
+    /// some triangles spread over each mesh. Sides that touch may hide them from walks.
     fn find_ahead(&self, found: &mut impl FnMut(TriangleHit)) {
         for i in 0..2 {
             let Some(view) = self[i].view() else { continue };
@@ -159,7 +163,8 @@ impl TriangleShapes<'_> {
         }
     }
 
-    /// Returns the contact of a triangle and of the triangle that a ray along its normal meets first, if both face each other.
+    /// Returns the contact of a triangle and of the triangle that a ray along its normal meets
+    /// first, if both face each other.
     fn ahead(&self, i: usize, triangle: u32, sign: Real) -> Option<TriangleHit> {
         let within = self.pose.prediction;
         let [a, b, c] = self[i].corners(triangle)?;
@@ -195,8 +200,8 @@ impl TriangleShapes<'_> {
         hit
     }
 
-    /// Returns the contact after a step from the point of shape `i`: the triangle of the other shape becomes
-    /// the nearest one. `None` beyond a limit.
+    /// Returns the contact after a step from the point of shape `i`: the triangle of the other
+    /// shape becomes the nearest one. `None` beyond a limit.
     fn step(&self, i: usize, (pair, known): &TriangleHit, limit: f64) -> Option<TriangleHit> {
         let placement = &self.pose.placement12;
         let [origin, ..] = self[0].corners(pair[0])?;
@@ -216,8 +221,8 @@ impl TriangleShapes<'_> {
         Some((pair, TriangleSurfaceContact::of_triangles(contact(t1, t2, limit)?)))
     }
 
-    /// Returns the contact of a point and the nearest triangle of the other shape. The point is in the frame of
-    /// shape `i`, and stands for the start of a half-edge.
+    /// Returns the contact of a point and the nearest triangle of the other shape. The point is in
+    /// the frame of shape `i`, and stands for the start of a half-edge.
     fn of_point(&self, i: usize, half_edge: u32, point: Vec3, within: Real) -> Option<TriangleHit> {
         let in_other = self.pose.in_other(i, point);
         let mut pair = [self[1 - i].nearest_triangle(in_other, within)?; 2];

@@ -19,8 +19,8 @@ use crate::mesh::{MeshView, box_between};
 pub(crate) struct Field<'a>(pub(crate) &'a HeightField);
 
 impl Field<'_> {
-    /// Returns false if the heights under the box of a mesh, which is placed in the field, are all beyond the prediction
-    /// distance.
+    /// Returns false if the heights under the box of a mesh, which is placed in the field, are all
+    /// beyond the prediction distance.
     pub(crate) fn is_near(self, mesh: &MeshView<'_>, mesh_pose: &Pose, prediction: Real) -> bool {
         let (placement, root) = (Placement::new(mesh_pose), mesh.root());
         let frame = FieldFrame::new(&self, &placement, prediction.max(0.0));
@@ -71,8 +71,9 @@ impl Field<'_> {
         (nearest.distance(point) <= within).then(|| self.id(triangle))
     }
 
-    /// Returns the nearest triangle to a point, and its nearest point. Walks from the cell under the point to nearer triangles
-    /// of the cells around, so the triangle is the nearest one there. Another hill may be nearer.
+    /// Returns the nearest triangle to a point, and its nearest point. Walks from the cell under
+    /// the point to nearer triangles of the cells around, so the triangle is the nearest one there.
+    /// Another hill may be nearer.
     fn walk(self, point: Vector) -> Option<(FieldTriangle, Vector)> {
         let (mut least, mut nearest, mut at) = (Real::INFINITY, None, point);
         for _ in 0..STEPS {
@@ -84,8 +85,9 @@ impl Field<'_> {
         nearest
     }
 
-    /// Returns the triangle that is nearest to a point, and its nearest point. Only the cell under `at` and the
-    /// cells around it count. The triangle that faces the point most wins a tie, as it tells the side of the point.
+    /// Returns the triangle that is nearest to a point, and its nearest point. Only the cell under
+    /// `at` and the cells around it count. The triangle that faces the point most wins a tie, as it
+    /// tells the side of the point.
     fn nearest_around(self, at: Vector, point: Vector) -> Option<(FieldTriangle, Vector)> {
         let (row, column) = self.0.closest_cell_at_point(at);
         let [columns, rows] = self.cell_counts();
@@ -208,8 +210,8 @@ impl HeightGrid for Field<'_> {
     }
 }
 
-/// Greatest number of cells on the way to the nearest triangle. Higher: more time where cells are small; lower:
-/// triangles that are farther.
+/// Greatest number of cells on the way to the nearest triangle. Higher: more time where cells are
+/// small; lower: triangles that are farther.
 const STEPS: usize = 32;
 
 /// Share of a distance below which two are equal.

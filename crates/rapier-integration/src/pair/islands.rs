@@ -24,7 +24,8 @@ pub(crate) struct OverlapIslands {
     pub(super) one_ways: Directions,
     /// Way out of each island whose contour has one, by island.
     pub(super) ways_out: Vec<Option<IslandWay>>,
-    /// Contacts along these ways in the middles of contours and at points of them, with their islands.
+    /// Contacts along these ways in the middles of contours and at points of them, with their
+    /// islands.
     of_contours: Vec<(usize, TriangleHit)>,
     /// Support of each island, by island. Others have no pairs.
     support: Vec<Support>,
@@ -43,9 +44,9 @@ pub(super) struct Support {
     sheet_side: DVec3,
 }
 
-/// Number of crossing pairs of an island for which one reliable contact is enough. Higher: bodies deep
-/// in each other turn about their only contact and sink; lower: contacts that are no local minima push
-/// aside.
+/// Number of crossing pairs of an island for which one reliable contact is enough. Higher: bodies
+/// deep in each other turn about their only contact and sink; lower: contacts that are no local
+/// minima push aside.
 const SUPPORTED: u32 = 4;
 
 /// Direction by which shape 2 leaves an overlap.
@@ -54,15 +55,18 @@ pub(super) struct IslandWay {
     pub(super) normal: DVec3,
     /// Depth of the overlap along the way.
     pub(super) length: f64,
-    /// True if the contour is in a plane across the way, or if two faces are across from each other.
+    /// True if the contour is in a plane across the way, or if two faces are across from each
+    /// other.
     pub(super) is_exact: bool,
-    /// True if the middle of the contour is in the overlap. If not, contacts of the pairs come first.
+    /// True if the middle of the contour is in the overlap. If not, contacts of the pairs come
+    /// first.
     pub(super) has_middle: bool,
 }
 
 impl IslandWay {
-    /// Returns the direction of the contact of two triangles: the way, turned a little to the direction out of both. Contacts of
-    /// Rapier are soft. One direction has four of them at most, and several directions carry more.
+    /// Returns the direction of the contact of two triangles: the way, turned a little to the
+    /// direction out of both. Contacts of Rapier are soft. One direction has four of them at most,
+    /// and several directions carry more.
     pub(super) fn towards(&self, [outward1, outward2]: [DVec3; 2]) -> DVec3 {
         let out = (outward1 - outward2).normalize_or_zero();
         if self.is_exact { self.normal } else { (self.normal + OUTWARD * out).normalize() }
@@ -74,7 +78,8 @@ impl Support {
         self.pairs <= SUPPORTED * self.reliable
     }
 
-    /// Returns true for the normals of contacts that push neither against the reliable ones, nor through a sheet.
+    /// Returns true for the normals of contacts that push neither against the reliable ones, nor
+    /// through a sheet.
     pub(super) fn agrees(self, normal: DVec3) -> bool {
         self.normals.dot(normal) >= 0.0 && self.sheet_side.dot(normal) >= 0.0
     }
@@ -114,7 +119,8 @@ pub(super) struct Crossing {
 /// Position of a body relative to a triangle of a sheet.
 #[derive(Copy, Clone)]
 pub(super) struct SheetSide {
-    /// The shape that counts as the sheet: of two sheets the larger one, `None` if both are equally large.
+    /// The shape that counts as the sheet: of two sheets the larger one, `None` if both are equally
+    /// large.
     pub(super) shape: Option<usize>,
     /// Normal of contacts that push the body off the front of the triangle.
     pub(super) away: DVec3,
@@ -141,8 +147,8 @@ impl Crossing {
         Some([0, 1].map(|i| signs[i] * area_vector(&corners[i]).normalize_or_zero()))
     }
 
-    /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. A sheet counts as
-    /// solid on the side away from the middle of the other shape.
+    /// Returns signs with which the normals of the triangles lead out of the shapes, if these are
+    /// known. A sheet counts as solid on the side away from the middle of the other shape.
     pub(super) fn outward_signs(&self) -> Option<[f64; 2]> {
         let of_sheet = |i: usize| {
             let SheetSide { shape, height, .. } = self.sheet?;
@@ -153,8 +159,9 @@ impl Crossing {
     }
 }
 
-/// Share of the direction out of two triangles in the direction of their contact, if the contour of the overlap is not flat. Higher:
-/// bodies that are deep in each other are pushed aside. Lower: heavy loads press bodies deeper.
+/// Share of the direction out of two triangles in the direction of their contact, if the contour of
+/// the overlap is not flat. Higher: bodies that are deep in each other are pushed aside. Lower:
+/// heavy loads press bodies deeper.
 const OUTWARD: f64 = 0.3;
 
 impl OverlapIslands {
@@ -177,8 +184,9 @@ impl OverlapIslands {
         crossing.chain(touching.copied())
     }
 
-    /// Finds the ways that part whole islands, and rejects contacts that push aside. Returns true if a second pass is needed. `small`: depth of bodies at rest.
-    /// `is_parted` tells if a way of a length parts two triangles, and both surfaces end there.
+    /// Finds the ways that part whole islands, and rejects contacts that push aside. Returns true
+    /// if a second pass is needed. `small`: depth of bodies at rest. `is_parted` tells if a way of
+    /// a length parts two triangles, and both surfaces end there.
     pub(super) fn settle_one_ways(
         &mut self,
         small: f64,
@@ -199,7 +207,8 @@ impl OverlapIslands {
         self.crossings.iter().any(is_rejected) || self.support.iter().any(needs_more)
     }
 
-    /// Joins crossings with common triangles to islands. An island has the index of its first crossing.
+    /// Joins crossings with common triangles to islands. An island has the index of its first
+    /// crossing.
     pub(super) fn join(&mut self) {
         let Self { crossings, touching, islands, with_triangle, .. } = self;
         islands.reset(crossings.len() + touching.len());
@@ -235,8 +244,8 @@ impl OverlapIslands {
         Some(self.support[island]).filter(|support| !support.is_enough())
     }
 
-    /// Replaces `list` by the crossings that may be part of a contour, one island after another. Crossings with an unknown outer
-    /// side are left out.
+    /// Replaces `list` by the crossings that may be part of a contour, one island after another.
+    /// Crossings with an unknown outer side are left out.
     pub(super) fn list_contours(&self, list: &mut Vec<Crossing>) {
         let has_sides = |one: &&Crossing| one.is_crossing && one.outward_signs().is_some();
         list.clear();

@@ -2,12 +2,12 @@ use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use sbbk_core::traverse::{MovingBody, Placement};
 
-/// Share by which a length may be greater in another frame: quaternions in f32 are not of unit length. Higher: more steps of
-/// casts. Lower: impacts are missed.
+/// Share by which a length may be greater in another frame: quaternions in f32 are not of unit
+/// length. Higher: more steps of casts. Lower: impacts are missed.
 pub(crate) const STRETCH: f64 = 1.0e-6;
 
-/// Rounding of a sum of some twenty products in f64, as a share of coordinates. Higher: more triangles are looked at. Lower:
-/// the nearest one is left out.
+/// Rounding of a sum of some twenty products in f64, as a share of coordinates. Higher: more
+/// triangles are looked at. Lower: the nearest one is left out.
 pub(crate) const ROUNDING: f64 = 1.0e-14;
 
 /// Pose of shape 2 in the frame of shape 1, and the prediction distance.

@@ -1,9 +1,10 @@
-//! A contact query. A kind of pair implements [`Pair`] and [`PairQuery`], and the [pipeline](super::update) calls it. A host
-//! keeps [`PairState`] between queries.
+//! A contact query. A kind of pair implements [`Pair`] and [`PairQuery`], and the
+//! [pipeline](super::update) calls it. A host keeps [`PairState`] between queries.
 //!
-//! A descent looks farther than the reach, and its candidates serve several queries: [`Slack`] decides for how long. Until
-//! then no tree is touched, and candidates that cannot have come within the reach are skipped. All others get the exact
-//! test, so a query without a descent finds the same contacts. Losing the state costs time only.
+//! A descent looks farther than the reach, and its candidates serve several queries: [`Slack`]
+//! decides for how long. Until then no tree is touched, and candidates that cannot have come within
+//! the reach are skipped. All others get the exact test, so a query without a descent finds the
+//! same contacts. Losing the state costs time only.
 
 use std::cell::Cell;
 use std::sync::LazyLock;
@@ -63,8 +64,8 @@ pub(crate) trait PairQuery {
     /// Begins a query: forgets what the last one left in the memory of the thread.
     fn begin(&self, _scratch: &mut Self::Scratch) {}
 
-    /// Adds all contacts within `margin` at once, for a query in fast motion whose candidates serve no other one. Returns
-    /// false if that costs more than candidates.
+    /// Adds all contacts within `margin` at once, for a query in fast motion whose candidates serve
+    /// no other one. Returns false if that costs more than candidates.
     fn contacts_without_candidates(
         &mut self,
         _margin: Real,
@@ -75,8 +76,8 @@ pub(crate) trait PairQuery {
         false
     }
 
-    /// Returns a lower bound of the distance between the shapes, if one above `margin` costs less than a descent. Asked for
-    /// where the last descent has found nothing.
+    /// Returns a lower bound of the distance between the shapes, if one above `margin` costs less
+    /// than a descent. Asked for where the last descent has found nothing.
     fn clearance(&self, _margin: Real) -> Option<Real> {
         None
     }
@@ -94,7 +95,8 @@ pub(crate) trait PairQuery {
         found: &mut Vec<Candidate<Self::Hint>>,
     );
 
-    /// Adds the contacts of candidates, in the order of subshapes: one for two subshapes, except vertices at half-spaces.
+    /// Adds the contacts of candidates, in the order of subshapes: one for two subshapes, except
+    /// vertices at half-spaces.
     fn contacts(
         &mut self,
         candidates: &mut [Candidate<Self::Hint>],
@@ -156,8 +158,8 @@ pub(crate) struct ContactPoints {
     pub(super) points: Vec<TrackedContact<()>>,
 }
 
-/// Memory of a thread for one kind of pair. Empty during a query: a query inside another one makes its
-/// own.
+/// Memory of a thread for one kind of pair. Empty during a query: a query inside another one makes
+/// its own.
 pub(crate) type Memory<Q> =
     Cell<Option<Box<QueryMemory<<Q as PairQuery>::Scratch, <Q as PairQuery>::Contact>>>>;
 
@@ -193,8 +195,8 @@ pub(super) struct PairState<S, H> {
 pub(crate) struct Candidate<H> {
     /// Numbers in shape 1 and shape 2.
     pub(super) subshapes: [u32; 2],
-    /// Lower bound of the distance plus the travel of the pair, both at the last measurement. The sum minus the present
-    /// travel is a lower bound of the present distance.
+    /// Lower bound of the distance plus the travel of the pair, both at the last measurement. The
+    /// sum minus the present travel is a lower bound of the present distance.
     pub(super) touches_at: f64,
     /// Makes the next contact cheaper. Never changes the contact.
     pub(super) hint: H,
@@ -210,8 +212,8 @@ impl<H: Default> Candidate<H> {
 /// Candidates of the last descent, and the last query.
 #[derive(Clone, Default)]
 pub(super) struct CandidateMemory<H> {
-    /// Pose, prediction distance, and number of manifolds left. `None` during a query, and after one that a
-    /// panic has ended.
+    /// Pose, prediction distance, and number of manifolds left. `None` during a query, and after
+    /// one that a panic has ended.
     last: Option<(Pose, Real, usize)>,
     /// True if the manifolds of the last query are patches.
     pub(super) has_patches: Option<bool>,
@@ -222,7 +224,8 @@ pub(super) struct CandidateMemory<H> {
     demand: HighWaterMark,
 }
 
-/// A pair without contacts and candidates, which gets none while the moving body moves by less than `rest`.
+/// A pair without contacts and candidates, which gets none while the moving body moves by less than
+/// `rest`.
 #[derive(Clone)]
 struct Calm {
     moving: Moving,
@@ -252,8 +255,8 @@ impl<H> CandidateMemory<H> {
         self.last == Some((pose.pos12, pose.prediction, manifold_count))
     }
 
-    /// Returns true if the last query found neither contacts nor candidates, and the pair has moved too little for any. Takes
-    /// note of the placement.
+    /// Returns true if the last query found neither contacts nor candidates, and the pair has moved
+    /// too little for any. Takes note of the placement.
     pub(super) fn is_calm(&mut self, pose: &PairPose) -> bool {
         let Some(Calm { moving, placement, prediction, rest }) = &self.calm else { return false };
         let now = moving.placement(pose);
@@ -265,7 +268,8 @@ impl<H> CandidateMemory<H> {
         is_calm
     }
 
-    /// Takes note of a query without contacts and candidates. No contact arises without candidates for a motion of `calm`.
+    /// Takes note of a query without contacts and candidates. No contact arises without candidates
+    /// for a motion of `calm`.
     pub(super) fn note_calm(&mut self, pose: &PairPose, moving: Moving, reach: Real, calm: f64) {
         let (placement, PairPose { prediction, .. }) = (*moving.placement(pose), *pose);
         let reach = reach.max(prediction);
@@ -332,11 +336,11 @@ pub(super) struct HighWaterMark {
 }
 
 impl HighWaterMark {
-    /// Queries until a quarter of the memory is given back, doubled at each regret. Higher: memory is kept
-    /// longer; lower: allocations where contacts come and go.
+    /// Queries until a quarter of the memory is given back, doubled at each regret. Higher: memory
+    /// is kept longer; lower: allocations where contacts come and go.
     const PATIENCE: u32 = 64;
-    /// Greatest number of regrets. Higher: memory is kept longer. Lower: a thread with many light pairs
-    /// and a heavy one allocates in each step.
+    /// Greatest number of regrets. Higher: memory is kept longer. Lower: a thread with many light
+    /// pairs and a heavy one allocates in each step.
     const MOST_REGRETS: u8 = 8;
 
     /// Notes what a query has used. Returns a limit if it is time to keep less.

@@ -1,9 +1,10 @@
-//! Contact reduction: chooses the contacts of patches before their points are made, and then points.
+//! Contact reduction: chooses the contacts of patches before their points are made, and then
+//! points.
 //!
-//! Contacts are grouped by normal. Each group keeps a deepest contact and up to three that span
-//! the contact area. Contacts as deep but far from that area stay, too. Within the area
-//! a contact adds nothing: the velocities of a rigid body along the normal are linear there.
-//! Wide contacts stay, as one point tells little about them. Points are then chosen in the same way.
+//! Contacts are grouped by normal. Each group keeps a deepest contact and up to three that span the
+//! contact area. Contacts as deep but far from that area stay, too. Within the area a contact adds
+//! nothing: the velocities of a rigid body along the normal are linear there. Wide contacts stay,
+//! as one point tells little about them. Points are then chosen in the same way.
 
 use std::cmp::Ordering;
 
@@ -14,12 +15,12 @@ use parry3d::query::TrackedContact;
 /// Points of a patch. Rapier's solver uses no more.
 pub(super) const MOST_POINTS: usize = 4;
 
-/// Least cosine of normals of one patch. Higher: more points, and nested bowls are less calm; lower:
-/// gears lose speed.
+/// Least cosine of normals of one patch. Higher: more points, and nested bowls are less calm;
+/// lower: gears lose speed.
 const SAME_NORMAL: Real = 0.99;
 
-/// Least cosine of normals of one patch of [far](PatchPlan::far) contacts. Higher: more points; lower:
-/// contacts about to touch are left out.
+/// Least cosine of normals of one patch of [far](PatchPlan::far) contacts. Higher: more points;
+/// lower: contacts about to touch are left out.
 const SAME_FAR_NORMAL: Real = 0.97;
 
 /// Least cosine of the normals of a contact and of one that it [hovers](PatchPlan::hover_distance)
@@ -30,52 +31,54 @@ const SAME_NORMAL_OVER: Real = 0.9;
 /// bodies in motion come deeper into others.
 const HOVER: Real = 0.1;
 
-/// Filter distance in radii of the smaller shape. Higher: plates that soft CCD sees turn through what
-/// they meet; lower: small bodies keep contacts at internal edges.
+/// Filter distance in radii of the smaller shape. Higher: plates that soft CCD sees turn through
+/// what they meet; lower: small bodies keep contacts at internal edges.
 pub(super) const FILTERED: Real = 0.1;
 
-/// [`PatchPlan::equal_depth`] as a share of the prediction distance. Higher: points that hover replace points that carry, and
-/// bodies rock; lower: thin plates turn through what they hit.
+/// [`PatchPlan::equal_depth`] as a share of the prediction distance. Higher: points that hover
+/// replace points that carry, and bodies rock; lower: thin plates turn through what they hit.
 pub(super) const EQUAL_DEPTH: Real = 0.02;
 
-/// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a step, so
-/// [`PatchPlan::equal_depth`] grows with the square of their ratio, up to the size of a patch. Higher: cones on uneven ground
-/// stay awake. Lower: coins stand on one arc of the rim, and turn through floors.
+/// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a
+/// step, so [`PatchPlan::equal_depth`] grows with the square of their ratio, up to the size of a
+/// patch. Higher: cones on uneven ground stay awake. Lower: coins stand on one arc of the rim, and
+/// turn through floors.
 const SMALL_RADIUS: Real = 20.0;
 
-/// Share of the depth of the deepest point that counts like [`PatchPlan::equal_depth`] where points are chosen. Higher: points
-/// that hover replace points that carry. Lower: thin discs stand on one arc of the rim, and turn through floors.
+/// Share of the depth of the deepest point that counts like [`PatchPlan::equal_depth`] where points
+/// are chosen. Higher: points that hover replace points that carry. Lower: thin discs stand on one
+/// arc of the rim, and turn through floors.
 const DEPTH_SHARE: Real = 0.5;
 
 /// [`PatchPlan::one_normal`]. Lower: threads of a screw lock.
 const ONE_NORMAL: Real = 0.99999;
 
-/// [`PatchPlan::size`] in radii of the smaller shape. Higher: legs of a table are left out; lower: a
-/// flat side is many patches, and points that move lose their data.
+/// [`PatchPlan::size`] in radii of the smaller shape. Higher: legs of a table are left out; lower:
+/// a flat side is many patches, and points that move lose their data.
 const PATCH_SIZE: Real = 0.2;
 
 /// Distances and cosines by which contacts make patches.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct PatchPlan {
-    /// Filter distance of surfaces. A contact beyond it joins patches by [`SAME_FAR_NORMAL`]. A patch of
-    /// such contacts is one manifold.
+    /// Filter distance of surfaces. A contact beyond it joins patches by [`SAME_FAR_NORMAL`]. A
+    /// patch of such contacts is one manifold.
     pub(super) far: Real,
     /// Distance beyond which a contact hovers: near one that touches, it joins its patch by
     /// [`SAME_NORMAL_OVER`]. Infinite if the prediction distance is a tenth of the radius or more.
     hover_distance: Real,
     /// Difference to the deepest contact of a patch up to which another counts as equally deep.
     pub(super) equal_depth: Real,
-    /// Contacts closer than this to the hull of the chosen ones are dropped. A point that has moved by no more is
-    /// the same point.
+    /// Contacts closer than this to the hull of the chosen ones are dropped. A point that has moved
+    /// by no more is the same point.
     pub(super) size: Real,
     /// Least cosine of normals of one manifold of a patch.
     pub(super) one_normal: Real,
 }
 
 impl PatchPlan {
-    /// Plan where all contacts are far: one patch for each direction. The deepest contact may change
-    /// before they touch, and Rapier's solver leaves one point of two equal manifolds that have more
-    /// than four.
+    /// Plan where all contacts are far: one patch for each direction. The deepest contact may
+    /// change before they touch, and Rapier's solver leaves one point of two equal manifolds that
+    /// have more than four.
     pub(super) const ALL_FAR: Self = Self {
         far: Real::INFINITY,
         hover_distance: Real::INFINITY,
@@ -203,7 +206,8 @@ impl Reduction {
         members.sort_unstable_by(|a, b| a.patch.cmp(&b.patch).then_with(|| by_depth(a, b)));
     }
 
-    /// Keeps the outermost contacts of each patch. Also keeps contacts that may reach far out of the hull of the outermost ones.
+    /// Keeps the outermost contacts of each patch. Also keeps contacts that may reach far out of
+    /// the hull of the outermost ones.
     fn keep_outermost(&mut self, plan: PatchPlan) {
         let Self { members, places, outermost, .. } = self;
         for members in members.chunk_by_mut(|a, b| a.patch == b.patch) {
@@ -224,8 +228,9 @@ impl Reduction {
     }
 }
 
-/// Least distance of a chosen point from the hull, in distances between the first two points. Higher: narrow
-/// sides lose corners; lower: rounding adds points to a line. Also the share of [`PatchPlan::equal_depth`] that counts as rounding.
+/// Least distance of a chosen point from the hull, in distances between the first two points.
+/// Higher: narrow sides lose corners; lower: rounding adds points to a line. Also the share of
+/// [`PatchPlan::equal_depth`] that counts as rounding.
 const LINE: Real = 1.0e-3;
 
 /// Direction in which the first point is outermost. It is along no side of common meshes.
@@ -244,9 +249,10 @@ pub(super) struct Outermost {
 }
 
 impl Outermost {
-    /// Chooses the outermost of `points`, which come with their distances. Point 0 must be the deepest. The body reaches
-    /// each next point after the least turn. Along `normal` it is far outside the convex hull, and little above the deepest point.
-    /// More than four are chosen if others as deep are far from these.
+    /// Chooses the outermost of `points`, which come with their distances. Point 0 must be the
+    /// deepest. The body reaches each next point after the least turn. Along `normal` it is far
+    /// outside the convex hull, and little above the deepest point. More than four are chosen if
+    /// others as deep are far from these.
     pub(super) fn choose(
         &mut self,
         plan: PatchPlan,
@@ -293,7 +299,8 @@ impl Outermost {
         &self.chosen
     }
 
-    /// Chooses the first point: an outermost one with the normal of the deepest point and, up to rounding, its depth.
+    /// Chooses the first point: an outermost one with the normal of the deepest point and, up to
+    /// rounding, its depth.
     fn begin(&mut self, plan: PatchPlan, points: &[(Vec3, Real)], normal: impl Fn(usize) -> Vec3) {
         let (x, y) = normal(0).any_orthonormal_pair();
         let flat = |&(point, _): &(Vec3, Real)| Vec2::new(x.dot(point), y.dot(point));

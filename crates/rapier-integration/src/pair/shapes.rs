@@ -1,4 +1,5 @@
-//! Two shapes made of triangles, as the contact query sees them. A shape is a mesh or a height field.
+//! Two shapes made of triangles, as the contact query sees them. A shape is a mesh or a height
+//! field.
 
 use std::ops::{ControlFlow, Index};
 use std::sync::OnceLock;
@@ -35,11 +36,12 @@ pub(super) const NEAR_NORMAL: f64 = 0.87;
 /// Higher: rims do not carry what overhangs them. Lower: bodies stumble where meshes meet.
 pub(super) const LIP: f64 = 0.25;
 
-/// Distance, in sizes of the triangles, that rounding of poses to f32 may open between triangles that
-/// touch.
+/// Distance, in sizes of the triangles, that rounding of poses to f32 may open between triangles
+/// that touch.
 pub(super) const NEARLY_TOUCHING: f64 = 1.0e-6;
 
-/// Returns the distance up to which contacts must be local minima, from the radius of the smaller shape.
+/// Returns the distance up to which contacts must be local minima, from the radius of the smaller
+/// shape.
 pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
     if has_surface { f64::from(FILTERED * radius) } else { f64::INFINITY }
 }
@@ -68,8 +70,9 @@ pub(crate) struct TriangleShapes<'q> {
     pub(super) trees: Option<[&'q Tree; 2]>,
     /// 0 if shape 1 is the larger one or a height field, else 1.
     pub(super) larger: usize,
-    /// Distance up to which contacts must be local minima; infinite for contacts of each two triangles. Farther contacts
-    /// belong to soft CCD and need not be minima, as bodies may turn before they meet.
+    /// Distance up to which contacts must be local minima; infinite for contacts of each two
+    /// triangles. Farther contacts belong to soft CCD and need not be minima, as bodies may turn
+    /// before they meet.
     pub(super) filter_distance: f64,
     /// See [`reach`](Self::reach).
     pub(super) reach: OnceLock<Real>,
@@ -99,7 +102,8 @@ impl<'q> Index<usize> for TriangleShapes<'q> {
 }
 
 impl TriangleShapes<'_> {
-    /// Returns two triangles in frame 1, relative to a corner: with all digits. `None` if one does not exist.
+    /// Returns two triangles in frame 1, relative to a corner: with all digits. `None` if one does
+    /// not exist.
     #[inline(always)]
     pub(super) fn local(&self, [triangle1, triangle2]: [u32; 2]) -> Option<TrianglePair> {
         let corners1 = self[0].corners(triangle1)?;
@@ -128,8 +132,8 @@ impl TriangleShapes<'_> {
         Moving { body, shape: smaller }
     }
 
-    /// Returns a lower bound of the distance between two meshes, from the ball around the smaller one, if that is more than
-    /// `margin`.
+    /// Returns a lower bound of the distance between two meshes, from the ball around the smaller
+    /// one, if that is more than `margin`.
     pub(super) fn clearance(&self, margin: Real) -> Option<Real> {
         let [larger, _] = [self[self.larger].view()?, self[1 - self.larger].view()?];
         let Sphere { centre, radius } = self.moving().body.ball;
@@ -163,7 +167,8 @@ impl TriangleSurfaceContact {
         Self { contact, source: ContactSource::Triangles }
     }
 
-    /// Returns a contact that pushes shapes apart along a normal, at points that belong to no feature.
+    /// Returns a contact that pushes shapes apart along a normal, at points that belong to no
+    /// feature.
     pub(super) fn push_out(normal: DVec3, distance: f64, [point1, point2]: [DVec3; 2]) -> Self {
         let features = FeaturePair::new(Feature::Face, Feature::Face);
         let contact = TriangleContact { normal, distance, point1, point2, features };
@@ -182,7 +187,8 @@ pub(super) enum ContactSource {
     PushOut,
 }
 
-/// Returns the contact of two triangles within a distance. `hint` has the features to be tried first.
+/// Returns the contact of two triangles within a distance. `hint` has the features to be tried
+/// first.
 #[inline(always)]
 pub(super) fn contact_of(
     TrianglePair { corners: [t1, t2], .. }: &TrianglePair,
@@ -213,7 +219,8 @@ pub(crate) struct MeshShape<'q> {
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) enum Room {
     No,
-    /// Faces lead away from the room. They collide on both sides, as what stands in the room has faces of its own.
+    /// Faces lead away from the room. They collide on both sides, as what stands in the room has
+    /// faces of its own.
     FacingOut,
     /// Faces lead into the room, so the body is behind them.
     FacingIn,
@@ -224,8 +231,8 @@ pub(crate) struct FieldShape<'q> {
     pub(super) field: Field<'q>,
     /// Side of the ground, for contacts of surfaces.
     pub(super) side: Option<Side>,
-    /// The last triangle that was asked for its normal cone, and the cone. Contacts of a triangle follow each
-    /// other, and Parry computes the cone from four triangles.
+    /// The last triangle that was asked for its normal cone, and the cone. Contacts of a triangle
+    /// follow each other, and Parry computes the cone from four triangles.
     pub(super) cone: Option<(u32, Option<TrianglePseudoNormals>)>,
 }
 
@@ -326,7 +333,8 @@ impl<'q> TriangleShape<'q> {
         self.view().map_or(infinite, MeshView::ball)
     }
 
-    /// Returns the square of half the diagonal of the box around a mesh. A height field counts as larger than any.
+    /// Returns the square of half the diagonal of the box around a mesh. A height field counts as
+    /// larger than any.
     pub(super) fn size_squared(&self) -> Real {
         self.view().map_or(Real::INFINITY, MeshView::size_squared)
     }
@@ -342,7 +350,8 @@ impl<'q> TriangleShape<'q> {
         (2.0 * area / count as Real).sqrt()
     }
 
-    /// Returns the height of a mesh over the middle of its box along a unit direction; 0 for a height field.
+    /// Returns the height of a mesh over the middle of its box along a unit direction; 0 for a
+    /// height field.
     pub(super) fn height(&self, direction: Vector) -> Real {
         self.view().map_or(0.0, |view| view.height(direction, 0.0))
     }
@@ -359,8 +368,9 @@ impl<'q> TriangleShape<'q> {
         }
     }
 
-    /// Returns the distance in which a ray from a point inside leaves the shape, and the outward normal there. `None`
-    /// if the ray meets nothing, or first meets the front of a solid's triangle.
+    /// Returns the distance in which a ray from a point inside leaves the shape, and the outward
+    /// normal there. `None` if the ray meets nothing, or first meets the front of a solid's
+    /// triangle.
     pub(super) fn exit(&self, ray: &Ray, is_two_way: bool) -> Option<(Real, Vector)> {
         let outward = (!is_two_way).then(|| self.outward());
         match self {
@@ -374,8 +384,8 @@ impl<'q> TriangleShape<'q> {
         }
     }
 
-    /// Returns true if a solid ends within a length along a ray that starts in it. The ground below a height field
-    /// has no end.
+    /// Returns true if a solid ends within a length along a ray that starts in it. The ground below
+    /// a height field has no end.
     pub(super) fn ends_within(&self, [start, direction]: [DVec3; 2], length: f64) -> bool {
         let Some(MeshView { mesh, .. }) = self.view() else { return false };
         let ends = [start, start + length * direction].map(|end| end.as_vec3());
@@ -388,7 +398,8 @@ impl<'q> TriangleShape<'q> {
         surface::ends_within(near.map(corners), direction, length, self.outward())
     }
 
-    /// Returns true if a point may be in the body. Rays disagree on points of the surface. Sheets have the body behind them.
+    /// Returns true if a point may be in the body. Rays disagree on points of the surface. Sheets
+    /// have the body behind them.
     pub(super) fn may_hold(&self, point: Vector) -> bool {
         let is_inside = |sign: i32| f64::from(sign) * self.outward() > 0.0;
         match self {
@@ -410,7 +421,8 @@ impl<'q> TriangleShape<'q> {
         }
     }
 
-    /// Returns the first triangle that a ray meets within a length, the length, and the cosine of the angle with the normal.
+    /// Returns the first triangle that a ray meets within a length, the length, and the cosine of
+    /// the angle with the normal.
     pub(super) fn first_met(&self, ray: &Ray, within: Real) -> Option<(u32, Real, Real)> {
         let (triangle, hit) = match self {
             Self::Mesh(mesh) => first_hit(mesh.view.mesh, ray, within)?,
@@ -423,8 +435,8 @@ impl<'q> TriangleShape<'q> {
         Some((triangle, hit.time_of_impact, -hit.normal.dot(ray.dir)))
     }
 
-    /// Returns the nearest triangle to a point, if that is within a distance. The triangle of a height field may be
-    /// another that is near.
+    /// Returns the nearest triangle to a point, if that is within a distance. The triangle of a
+    /// height field may be another that is near.
     pub(super) fn nearest_triangle(&self, point: Vector, within: Real) -> Option<u32> {
         match self {
             Self::Mesh(mesh) => {

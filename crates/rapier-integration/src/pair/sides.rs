@@ -1,8 +1,9 @@
 //! Tells on which side of a sheet a body is, and whether a body is in a room.
 //!
-//! A sheet has two sides, and a body that crosses it leaves to the side of its middle. The nearest point of the sheet
-//! to the middle tells that side for all triangles, so they agree on wavy grounds. A body whose middle is a little
-//! behind the sheet may come from either side. The contacts of the triangles then hold it, as they push both ways.
+//! A sheet has two sides, and a body that crosses it leaves to the side of its middle. The nearest
+//! point of the sheet to the middle tells that side for all triangles, so they agree on wavy
+//! grounds. A body whose middle is a little behind the sheet may come from either side. The
+//! contacts of the triangles then hold it, as they push both ways.
 //!
 //! A mesh inside a larger one is in a room, or in a solid that pushes it out.
 
@@ -28,7 +29,8 @@ use crate::mesh::{BEHIND, LazySurface, MeshView, is_covered};
 const LEAN: f64 = 0.33;
 
 impl TriangleShapes<'_> {
-    /// Returns the position of the other shape over the nearest point of a sheet, unless that is at a border.
+    /// Returns the position of the other shape over the nearest point of a sheet, unless that is at
+    /// a border.
     pub(super) fn over_sheet(&self, sheet: usize) -> Option<OverSheet> {
         *self.over_sheets[sheet].get_or_init(|| {
             let (body, rotation) = (1 - sheet, self.pose.pos12.rotation);
@@ -49,22 +51,23 @@ impl TriangleShapes<'_> {
         })
     }
 
-    /// Returns the height over the front of a sheet, with a preference for the front. A triangle with a double that is wound the
-    /// other way has no front.
+    /// Returns the height over the front of a sheet, with a preference for the front. A triangle
+    /// with a double that is wound the other way has no front.
     pub(super) fn leaning(&self, over: OverSheet, sheet: usize, triangle: u32) -> f64 {
         let has_front = !self[sheet].is_two_sided(triangle);
         if has_front { over.height + LEAN * over.half_height } else { over.height }
     }
 
-    /// Returns the first triangle that crosses a sheet, and the position of the other shape over the sheet.
+    /// Returns the first triangle that crosses a sheet, and the position of the other shape over
+    /// the sheet.
     fn crossed_sheet(&self, crossings: &[Crossing]) -> Option<([u32; 2], usize, OverSheet)> {
         let sheet_of = |crossing: &Crossing| Some((crossing.pair, crossing.sheet?.shape?));
         let (pair, sheet) = crossings.iter().find_map(sheet_of)?;
         Some((pair, sheet, self.over_sheet(sheet)?))
     }
 
-    /// Returns true if triangles cross a sheet, and the body is a little behind the front and may come from either side. A body
-    /// at rest, which sinks in a little, does not.
+    /// Returns true if triangles cross a sheet, and the body is a little behind the front and may
+    /// come from either side. A body at rest, which sinks in a little, does not.
     pub(super) fn is_side_doubtful(&self, crossings: &[Crossing]) -> bool {
         let Some((pair, sheet, over)) = self.crossed_sheet(crossings) else { return false };
         if self.leaning(over, sheet, pair[sheet]) > 0.0 {
@@ -89,25 +92,29 @@ impl TriangleShapes<'_> {
     }
 }
 
-/// Half heights of a body that may stick out of a room that holds it. A room whose faces lead in holds a body whose middle is so
-/// far behind a wall. Higher: bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
+/// Half heights of a body that may stick out of a room that holds it. A room whose faces lead in
+/// holds a body whose middle is so far behind a wall. Higher: bodies deep in a solid stay there.
+/// Lower: fast bodies fall through the floors of rooms.
 const STICKS_OUT: Real = 0.5;
 
-/// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in tenths of its
-/// radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into solids.
+/// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in
+/// tenths of its radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into
+/// solids.
 const ROOM_DEPTH: f64 = 0.5;
 
-/// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low halls. Lower: small fast
-/// bodies fall through floors and walls that are solids.
+/// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low
+/// halls. Lower: small fast bodies fall through floors and walls that are solids.
 const SLAB: Real = 0.1;
 
 /// Share of an f32 distance that is a lower bound of the exact one.
 const SURE: f64 = 0.99;
 
-/// Last result of the test whether the smaller mesh is inside the larger one. Spares most queries a test.
+/// Last result of the test whether the smaller mesh is inside the larger one. Spares most queries a
+/// test.
 ///
-/// The larger mesh was such a room at this placement of the smaller mesh, and stays one for this motion. [`Room::No`] if a
-/// point of the smaller mesh was this far outside, or if the larger mesh is no solid. `None` before a test.
+/// The larger mesh was such a room at this placement of the smaller mesh, and stays one for this
+/// motion. [`Room::No`] if a point of the smaller mesh was this far outside, or if the larger mesh
+/// is no solid. `None` before a test.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct InsideTest(Option<(Room, Placement, f64)>);
 
@@ -117,7 +124,8 @@ impl InsideTest {
         Self(Some((room, *placement, SURE * f64::from(slack))))
     }
 
-    /// Returns the room that holds a mesh. `None` if the last result does not hold for a mesh with points in `ball`.
+    /// Returns the room that holds a mesh. `None` if the last result does not hold for a mesh with
+    /// points in `ball`.
     fn known(&self, ball: Sphere, placement: &Placement) -> Option<Room> {
         let (room, ..) = self.0?;
         (self.rest(ball, placement) > 0.0).then_some(room)
@@ -161,7 +169,8 @@ impl<'a> HeldMesh<'a> {
         test.rest(self.held.ball(), self.placement())
     }
 
-    /// Returns the room that the larger mesh is for the smaller one. The middle of the smaller one is in it.
+    /// Returns the room that the larger mesh is for the smaller one. The middle of the smaller one
+    /// is in it.
     pub(super) fn room(&self, test: &mut InsideTest) -> Room {
         let Self { held, holder, .. } = self;
         if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
@@ -185,8 +194,9 @@ impl<'a> HeldMesh<'a> {
         if slack.is_some() { room } else { Room::No }
     }
 
-    /// Returns true if the middle of the held mesh is a little behind a wall of a room whose faces lead in. A fast body is there after
-    /// a step. Low rooms may be flat solids that are inside out. `middle` is outside.
+    /// Returns true if the middle of the held mesh is a little behind a wall of a room whose faces
+    /// lead in. A fast body is there after a step. Low rooms may be flat solids that are inside
+    /// out. `middle` is outside.
     fn is_behind_wall(&self, middle: Vector, test: &mut InsideTest) -> bool {
         let most = f64::from(STICKS_OUT * self.held.ball().radius);
         if test.rest(self.held.ball(), self.placement()) > most
@@ -206,9 +216,9 @@ impl<'a> HeldMesh<'a> {
             && !self.is_lower(self.least_height(), 2.0 * wall - middle, wall, -1.0)
     }
 
-    /// Returns a motion for which a mesh whose faces lead out stays a room. `None` if the mesh is no room. The held mesh hardly
-    /// sticks out of a room. A long tube is a room although its ends are open. Flat solids are no rooms, nor are solids that thin
-    /// bodies have just sunk in.
+    /// Returns a motion for which a mesh whose faces lead out stays a room. `None` if the mesh is
+    /// no room. The held mesh hardly sticks out of a room. A long tube is a room although its ends
+    /// are open. Flat solids are no rooms, nor are solids that thin bodies have just sunk in.
     fn slack_in_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
         let depth = exit.distance(middle);
         let height = self.held.height(self.way_to(exit), depth / (1.0 - STICKS_OUT));
@@ -217,14 +227,16 @@ impl<'a> HeldMesh<'a> {
             && f64::from(depth + height) >= ROOM_DEPTH * unit
             && !self.is_lower(self.least_height(), middle, exit, 1.0)
             && !self.surface.is_declared_solid();
-        // No test above depends on more than this depth. At half the height of a room, the other half is beyond.
+        // No test above depends on more than this depth. At half the height of a room, the other
+        // half is beyond.
         let radius = self.held.ball().radius;
         let enough = ((1.0 - STICKS_OUT) * radius).max(0.5 * self.least_height());
         is_in_room.then_some(depth - enough)
     }
 
-    /// Returns a motion for which a mesh whose faces lead in stays a room. `None` if the mesh is no room. Bodies that fit in a low hall
-    /// are in a room. Thin bodies have just sunk in a flat solid that is inside out.
+    /// Returns a motion for which a mesh whose faces lead in stays a room. `None` if the mesh is no
+    /// room. Bodies that fit in a low hall are in a room. Thin bodies have just sunk in a flat
+    /// solid that is inside out.
     fn slack_in_inward_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
         let depth = exit.distance(middle);
         let height = self.held.height(self.way_to(exit), Real::INFINITY);
@@ -236,7 +248,8 @@ impl<'a> HeldMesh<'a> {
         is_room.then_some(depth - enough)
     }
 
-    /// Returns the direction from the middle of the held mesh to a point of the holder, in the frame of the held mesh.
+    /// Returns the direction from the middle of the held mesh to a point of the holder, in the
+    /// frame of the held mesh.
     fn way_to(&self, point: Vector) -> Vector {
         (self.pose.in_other(self.outer, point) - self.held.ball().centre).normalize_or_zero()
     }
@@ -256,16 +269,17 @@ impl<'a> HeldMesh<'a> {
         self.pose.in_other(1 - self.outer, point)
     }
 
-    /// Returns true if the larger mesh is thinner than a height at `point`, measured along the line through `exit`, its nearest
-    /// point. `outward` is the sign with which normals lead out of the mesh.
+    /// Returns true if the larger mesh is thinner than a height at `point`, measured along the line
+    /// through `exit`, its nearest point. `outward` is the sign with which normals lead out of the
+    /// mesh.
     fn is_lower(&self, height: Real, point: Vector, exit: Vector, outward: f64) -> bool {
         let most = height - exit.distance(point);
         let ray = Ray::new(point, (point - exit).normalize_or_zero());
         self.holder.exit(&ray, Some(outward)).is_some_and(|(length, _)| length < most)
     }
 
-    /// Returns the nearest point of the larger mesh, and the room that it may be, if a point of the smaller one is inside. `point`
-    /// is in the frame of the larger mesh.
+    /// Returns the nearest point of the larger mesh, and the room that it may be, if a point of the
+    /// smaller one is inside. `point` is in the frame of the larger mesh.
     fn room_around(&self, point: Vector, test: &mut InsideTest) -> Option<(Vector, Room)> {
         let Self { holder, surface, .. } = self;
         let placement = self.placement();
@@ -293,7 +307,8 @@ impl<'a> HeldMesh<'a> {
         (room != Room::No).then_some((near, room))
     }
 
-    /// Returns the contact that leads the held mesh out of a solid, by the shortest way from its middle.
+    /// Returns the contact that leads the held mesh out of a solid, by the shortest way from its
+    /// middle.
     ///
     /// Tests one vertex: a mesh that pierces the surface has contacts.
     pub(super) fn push_out(&self, test: &mut InsideTest) -> Option<TriangleHit> {

@@ -2,8 +2,8 @@
 //!
 //! * Apart: both points are local minima of the distance ([`Around::is_local_minimum`]), and the
 //!   normal leads out of solids. Others are contacts of internal edges, or of walls that pass by.
-//!   Distant edges and vertices may pass each other, and count only if they face each other or if nothing is
-//!   nearer.
+//!   Distant edges and vertices may pass each other, and count only if they face each other or if
+//!   nothing is nearer.
 //! * Crossing: the contact leads out of solids, and both surfaces end where the overlap does.
 //!   Triangles of solids that have passed each other count as crossing.
 //!
@@ -31,21 +31,22 @@ use crate::mesh::BEHIND;
 /// out on their far sides; lower: more second passes.
 const TRUSTED_DEPTH: f64 = 5.0;
 
-/// Least cosine between the normals of an upright contact and of its face. Higher: contacts are turned
-/// in vain; lower: slanted contacts keep their normals.
+/// Least cosine between the normals of an upright contact and of its face. Higher: contacts are
+/// turned in vain; lower: slanted contacts keep their normals.
 pub(super) const ALONG_NORMAL: f64 = 0.999_999;
 
-/// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through sheets
-/// that face away from them. Lower: rods and plates sink through sheets.
+/// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through
+/// sheets that face away from them. Lower: rods and plates sink through sheets.
 const THIN: f64 = 0.03;
 
-/// Length by which a ray between two triangles that have passed each other starts and ends within them, in their distance.
-/// Also the share of the way to the middle of a triangle at which a second point is tested.
-/// Higher: thin walls in each other are pushed together. Lower: rounding decides where rays start.
+/// Length by which a ray between two triangles that have passed each other starts and ends within
+/// them, in their distance. Also the share of the way to the middle of a triangle at which a second
+/// point is tested. Higher: thin walls in each other are pushed together. Lower: rounding decides
+/// where rays start.
 const WITHIN: f64 = 0.01;
 
-/// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
-/// are. Higher: contacts are lost; lower: triangles that touch count as crossing.
+/// Distance, in sizes of the triangles, below which rounding decides on which side of each other
+/// these are. Higher: contacts are lost; lower: triangles that touch count as crossing.
 const SIDE_ROUNDING: f64 = 1.0e-9;
 
 /// Result of the first pass for two triangles.
@@ -71,7 +72,8 @@ impl TriangleShapes<'_> {
     }
 }
 
-/// Two triangles and the surfaces around them. Turns contacts of the triangles into contacts of the surfaces.
+/// Two triangles and the surfaces around them. Turns contacts of the triangles into contacts of the
+/// surfaces.
 pub(super) struct SurfaceFilter<'a> {
     pub(super) shapes: &'a TriangleShapes<'a>,
     pub(super) pair: [u32; 2],
@@ -116,7 +118,8 @@ impl<'a> SurfaceFilter<'a> {
             return Verdict::None;
         }
         if contact.distance > self.shapes.filter_distance {
-            // The smaller shape may turn before the two meet. A contact from within the larger one would hold it in.
+            // The smaller shape may turn before the two meet. A contact from within the larger one
+            // would hold it in.
             let leads_inside = self.larger().any(|i| self.points_inside(i, &contact));
             return if leads_inside { Verdict::None } else { Verdict::Contact(of_triangles, None) };
         }
@@ -136,8 +139,8 @@ impl<'a> SurfaceFilter<'a> {
         Verdict::Crossing(self.crossing(&contact))
     }
 
-    /// Returns true if triangles that are apart have passed each other in solids. `is_first_minimum`: the contact is a local
-    /// minimum on shape 1.
+    /// Returns true if triangles that are apart have passed each other in solids.
+    /// `is_first_minimum`: the contact is a local minimum on shape 1.
     #[inline(always)]
     fn have_passed(&self, is_first_minimum: bool, contact: &TriangleContact) -> bool {
         let is_solid = self.are_solid();
@@ -150,8 +153,8 @@ impl<'a> SurfaceFilter<'a> {
             && self.is_way_inside(is_solid, contact)
     }
 
-    /// Returns true if the other point of a contact is in a solid that does not end before. If both solids end between the
-    /// points, they are thin walls, and their outer sides have the contact.
+    /// Returns true if the other point of a contact is in a solid that does not end before. If both
+    /// solids end between the points, they are thin walls, and their outer sides have the contact.
     fn is_way_inside(&self, is_solid: [bool; 2], contact: &TriangleContact) -> bool {
         if is_solid != [true; 2] {
             return true;
@@ -165,8 +168,8 @@ impl<'a> SurfaceFilter<'a> {
         (0..2).any(|i| !ends(i) && (is_sure(i) || self.may_hold(i, contact, length)))
     }
 
-    /// Returns true if the other triangle of a contact has a point in a solid, or if that is in doubt. `length`: of
-    /// the way to the other triangle.
+    /// Returns true if the other triangle of a contact has a point in a solid, or if that is in
+    /// doubt. `length`: of the way to the other triangle.
     fn may_hold(&self, i: usize, contact: &TriangleContact, length: f64) -> bool {
         let [start, direction] = self.way(i, contact);
         // The point may be at a border of the solid though the triangle is in it.
@@ -184,8 +187,8 @@ impl<'a> SurfaceFilter<'a> {
         (0..2).all(|i| self.is_minimum(i, contact))
     }
 
-    /// Returns true if the point on the larger shape, or on one of two equally large ones, is a local minimum of the
-    /// distance.
+    /// Returns true if the point on the larger shape, or on one of two equally large ones, is a
+    /// local minimum of the distance.
     pub(super) fn is_minimum_of_larger(&self, contact: &TriangleContact) -> bool {
         self.larger().any(|i| self.is_minimum(i, contact))
     }
@@ -247,8 +250,8 @@ impl<'a> SurfaceFilter<'a> {
         }
     }
 
-    /// Returns the extremal contact of a crossing. Triangles that only touch do not count, nor does the far side of a
-    /// thin wall, behind which the sheet is.
+    /// Returns the extremal contact of a crossing. Triangles that only touch do not count, nor does
+    /// the far side of a thin wall, behind which the sheet is.
     pub(super) fn find_extremal(&self, crossing: &mut Crossing) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
         let good = self.outward_axes().extremal(ends, crossing.greatest);
@@ -263,8 +266,8 @@ impl<'a> SurfaceFilter<'a> {
         good.filter(|_| !is_lost).map(|contact| TriangleSurfaceContact { contact, source })
     }
 
-    /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller sheet,
-    /// is. `None` for two solids, and if the solid is larger than the sheet.
+    /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller
+    /// sheet, is. `None` for two solids, and if the solid is larger than the sheet.
     pub(super) fn sheet_side(&self, is_solid: [bool; 2]) -> Option<SheetSide> {
         let smaller = self.smaller();
         let body = match is_solid {
@@ -292,7 +295,8 @@ impl<'a> SurfaceFilter<'a> {
         Some(SheetSide { shape: None, away: between.try_normalize()?, height: between.length() })
     }
 
-    /// Returns the normal of a sheet's triangle, and the height of the other shape's middle over the front.
+    /// Returns the normal of a sheet's triangle, and the height of the other shape's middle over
+    /// the front.
     fn height_over(&self, sheet: usize) -> (DVec3, f64) {
         let (normal, height) = self.middle_over(sheet);
         let own = self.in_frame(1 - sheet, normal).as_vec3();
@@ -331,7 +335,8 @@ impl<'a> SurfaceFilter<'a> {
         Outward::new(self.local.corners.each_ref(), self.outward_signs(), cones)
     }
 
-    /// Returns the signs with which the normals of the triangles lead out of solids; `None` for sheets.
+    /// Returns the signs with which the normals of the triangles lead out of solids; `None` for
+    /// sheets.
     fn outward_signs(&self) -> [Option<f64>; 2] {
         self.surfaces.each_ref().map(|surface| surface.side.outward())
     }
@@ -354,7 +359,8 @@ impl<'a> SurfaceFilter<'a> {
             && self.local.corners.iter().any(|corners| leans(corners, normal))
     }
 
-    /// Returns the normal of the face for a contact at its border. The other shape must be all on one side of the face.
+    /// Returns the normal of the face for a contact at its border. The other shape must be all on
+    /// one side of the face.
     fn normal_at_border(&self, i: usize, contact: &TriangleContact) -> Option<DVec3> {
         let feature = feature(contact, i);
         if feature == Feature::Face {
@@ -376,14 +382,15 @@ impl<'a> SurfaceFilter<'a> {
         (lowest >= -LIP * self.shapes.filter_unit()).then_some([up, -up][i])
     }
 
-    /// Returns start and direction of the ray between both points of a contact, in the frame of a shape. The ray begins a
-    /// little way off the surface.
+    /// Returns start and direction of the ray between both points of a contact, in the frame of a
+    /// shape. The ray begins a little way off the surface.
     fn way(&self, i: usize, contact: &TriangleContact) -> [DVec3; 2] {
         let way = self.direction(i, contact);
         [self.place(i, contact) + WITHIN * contact.distance * way, way]
     }
 
-    /// Returns the direction in which the normal of a contact leads away from its point on a shape, in the frame of the shape.
+    /// Returns the direction in which the normal of a contact leads away from its point on a shape,
+    /// in the frame of the shape.
     fn direction(&self, i: usize, TriangleContact { normal, .. }: &TriangleContact) -> DVec3 {
         self.in_frame(i, [*normal, -*normal][i])
     }
@@ -431,7 +438,8 @@ impl<'a> SurfaceFilter<'a> {
         self.surfaces[i].is_local_minimum(self.pair[i], feature, self.in_frame(i, axis), None)
     }
 
-    /// Returns true if both surfaces end where an overlap along a direction does, at the outermost corners.
+    /// Returns true if both surfaces end where an overlap along a direction does, at the outermost
+    /// corners.
     pub(super) fn ends_along(&self, way: DVec3) -> bool {
         (0..2).all(|i| {
             let axis = [way, -way][i];
@@ -440,7 +448,8 @@ impl<'a> SurfaceFilter<'a> {
         })
     }
 
-    /// Returns the square of the least cosine between the normal of a triangle and an axis along which its surface may end.
+    /// Returns the square of the least cosine between the normal of a triangle and an axis along
+    /// which its surface may end.
     fn least_square(&self, i: usize) -> f64 {
         self.surfaces[i].facets.cones(self.pair[i]).least_square(false)
     }

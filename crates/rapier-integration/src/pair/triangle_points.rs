@@ -15,8 +15,8 @@ use super::pose::PairPose;
 use super::query::ContactPoints;
 use super::shapes::Cones;
 
-/// Replaces `points` by the clipped points of a contact of two triangles. The normal is projected into the normal
-/// cones of both triangles; there are no points if the cones reject the contact.
+/// Replaces `points` by the clipped points of a contact of two triangles. The normal is projected
+/// into the normal cones of both triangles; there are no points if the cones reject the contact.
 #[inline(always)]
 pub(super) fn write_triangle_points(
     pose: &PairPose,

@@ -1,14 +1,16 @@
 //! Contacts of a mesh and another mesh or a height field.
 //!
-//! Each candidate is a pair of triangles with an exact contact ([`sbbk_core::contact`](mod@sbbk_core::contact)). The first
-//! pass keeps those that are contacts of the surfaces ([`SurfaceFilter`]). A second pass adds
-//! contacts to crossing triangles that too few contacts push apart ([`OverlapIslands`]).
+//! Each candidate is a pair of triangles with an exact contact
+//! ([`sbbk_core::contact`](mod@sbbk_core::contact)). The first pass keeps those that are contacts
+//! of the surfaces ([`SurfaceFilter`]). A second pass adds contacts to crossing triangles that too
+//! few contacts push apart ([`OverlapIslands`]).
 //!
-//! Stock Parry finds no contacts of a mesh and a height field. Triangles of a field have the numbers that Parry gives them in
-//! contacts with convex shapes.
+//! Stock Parry finds no contacts of a mesh and a height field. Triangles of a field have the
+//! numbers that Parry gives them in contacts with convex shapes.
 //!
-//! Hosts drop the workspace of a pair when they edit a shape. If a host does not, another field, scale or flag is noticed at once.
-//! A removed triangle is noticed when the pair moves, and an added one at the next descent.
+//! Hosts drop the workspace of a pair when they edit a shape. If a host does not, another field,
+//! scale or flag is noticed at once. A removed triangle is noticed when the pair moves, and an
+//! added one at the next descent.
 
 mod overlaps;
 
@@ -41,15 +43,17 @@ use super::triangle_points::{constrained_normal, write_triangle_points};
 use crate::SbbkConfig;
 use crate::mesh::{Change, LazySurface, MeshView, PairMesh, use_trees};
 
-/// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until bodies
-/// have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep inside.
+/// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until
+/// bodies have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep
+/// inside.
 const DEEPEST: f64 = 4.0;
 
 /// Least number of candidates of a chunk. Higher: threads wait for each other; lower: threads
 /// take turns for chunks of a few microseconds.
 const LEAST_CANDIDATES: usize = 256;
 
-/// Share of the least distance below which a distance is less. Higher: rounding decides where triangles have equal distances.
+/// Share of the least distance below which a distance is less. Higher: rounding decides where
+/// triangles have equal distances.
 const NEARER: f64 = 0.999;
 
 /// A query about two shapes made of triangles.
@@ -326,8 +330,9 @@ impl PairQuery for TriangleQuery<'_> {
         }
     }
 
-    /// Makes one patch for each direction if all contacts are beyond the filter distance. Rapier's solver
-    /// drops such points of manifolds of more than four, and a falling plate would turn about one point.
+    /// Makes one patch for each direction if all contacts are beyond the filter distance. Rapier's
+    /// solver drops such points of manifolds of more than four, and a falling plate would turn
+    /// about one point.
     fn reduction(&self, contacts: &ContactList<TriangleSurfaceContact>) -> Option<PatchPlan> {
         let near = self.shapes.filter_distance;
         let may_be_far = f64::from(self.shapes.pose.prediction) > near;
@@ -452,7 +457,8 @@ impl TriangleQuery<'_> {
         contacts.extend(may_touch.filter_map(contact).filter(is_near));
     }
 
-    /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than all other contacts.
+    /// Adds the contacts of edges and vertices that may pass each other, if they are nearer than
+    /// all other contacts.
     fn add_passing(&self, first: &mut FirstPass) {
         let FirstPass { contacts, upright, passing, islands, .. } = first;
         if passing.is_empty() || !islands.crossings.is_empty() {

@@ -2,10 +2,10 @@
 //!
 //! * The state of the pair comes from the host's workspace ([`state_in`]).
 //! * A change of the shapes since the last query drops what no longer holds.
-//! * An equal pose leaves the manifolds as they are. Shapes that were apart, and have moved by less than their distance,
-//!   have none.
-//! * If the candidates of the last descent no longer serve, a descent finds new ones. If there were none, a lower bound
-//!   of the distance may replace the descent.
+//! * An equal pose leaves the manifolds as they are. Shapes that were apart, and have moved by less
+//!   than their distance, have none.
+//! * If the candidates of the last descent no longer serve, a descent finds new ones. If there were
+//!   none, a lower bound of the distance may replace the descent.
 //! * Candidates in reach become contacts ([`PairQuery::contacts`]).
 //! * Contacts become manifolds: one each, or a few for all ([`write`](super::write)).
 
@@ -20,7 +20,8 @@ use super::write::Writer;
 use crate::mesh::MeshStore;
 use crate::stats::QueryOutcome;
 
-/// Number of contacts for which a thread always keeps its memory. Higher: more memory; lower: more allocations.
+/// Number of contacts for which a thread always keeps its memory. Higher: more memory; lower: more
+/// allocations.
 const LEAST_KEPT: usize = 1024;
 
 /// Brings the manifolds of a pair up to date.

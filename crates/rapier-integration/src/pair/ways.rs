@@ -1,7 +1,8 @@
 //! Ways out of overlaps, by group: the islands of two meshes, or the parts of a convex shape.
 //!
-//! All overlaps of a group may have the same way out. If resting bodies are as deep, only contacts along this way count. Otherwise a body that has sunk in
-//! by a millimetre would stop at the sides of a gap.
+//! All overlaps of a group may have the same way out. If resting bodies are as deep, only contacts
+//! along this way count. Otherwise a body that has sunk in by a millimetre would stop at the sides
+//! of a gap.
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;
@@ -9,24 +10,25 @@ use rustc_hash::FxHashMap;
 
 use super::reduce::EQUAL_DEPTH;
 
-/// Greatest depth of resting bodies, in filter distances: a fiftieth of the radius. Higher: bodies deep in others leave along one way. Lower:
-/// heavy bodies stop at gaps.
+/// Greatest depth of resting bodies, in filter distances: a fiftieth of the radius. Higher: bodies
+/// deep in others leave along one way. Lower: heavy bodies stop at gaps.
 pub(super) const RESTING_DEPTH: f64 = 0.2;
 
-/// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor let go. Lower: edges that cross push
-/// each other aside.
+/// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor
+/// let go. Lower: edges that cross push each other aside.
 pub(super) const ALIKE: f64 = 1.1;
 
-/// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
-/// lower: contacts that do not push against each other are rejected.
+/// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in
+/// it; lower: contacts that do not push against each other are rejected.
 pub(super) const SAME_SIDE: f64 = 0.5;
 
-/// Cosine above which two normals of a triangle's contacts are one direction. Higher: a triangle that
-/// many others cross takes longer; lower: directions that push against each other are confused.
+/// Cosine above which two normals of a triangle's contacts are one direction. Higher: a triangle
+/// that many others cross takes longer; lower: directions that push against each other are
+/// confused.
 pub(super) const SAME_DIRECTION: f64 = 0.99;
 
-/// Directions of reliable contacts that are remembered for a group. Higher: slower where many differ. Lower: ways out
-/// are missed.
+/// Directions of reliable contacts that are remembered for a group. Higher: slower where many
+/// differ. Lower: ways out are missed.
 const MOST_DIRECTIONS: usize = 16;
 
 /// Directions with the greatest depths of their contacts.
@@ -51,7 +53,8 @@ impl Ways {
         add_direction(self.of(group), normal, depth);
     }
 
-    /// Removes the ways that are deeper than `small`, and those that do not part an overlap with a contact along `normal`.
+    /// Removes the ways that are deeper than `small`, and those that do not part an overlap with a
+    /// contact along `normal`.
     pub(super) fn keep_parting(
         &mut self,
         group: usize,

@@ -16,17 +16,17 @@ use parry3d::shape::PackedFeatureId;
 use super::query::{ContactPoints, HighWaterMark, PairQuery, QueryMemory};
 use super::reduce::{MOST_POINTS, Member, PatchPlan, PatchPoint, Reduction};
 
-/// Spare manifolds that a thread keeps, of some 500 bytes each. Higher: more memory; lower: allocations
-/// where pairs lose and gain many contacts at once.
+/// Spare manifolds that a thread keeps, of some 500 bytes each. Higher: more memory; lower:
+/// allocations where pairs lose and gain many contacts at once.
 const MOST_SPARE: usize = 256;
 
-/// Least cosine of the normals of patches and of points of successive queries that may be the same. Higher:
-/// patches that turn lose their data; lower: patches take the data of others.
+/// Least cosine of the normals of patches and of points of successive queries that may be the same.
+/// Higher: patches that turn lose their data; lower: patches take the data of others.
 const LIKE_NORMAL: Real = 0.9;
 
 thread_local! {
-    /// Memory of a thread, for the data types of the last host. Empty during a query: a query inside
-    /// another one makes its own.
+    /// Memory of a thread, for the data types of the last host. Empty during a query: a query
+    /// inside another one makes its own.
     static POOL: Cell<Option<Box<dyn Any>>> = Cell::default();
 }
 
@@ -60,8 +60,8 @@ struct OldPoint<C> {
 pub(super) struct Writer<'m, M, C> {
     manifolds: &'m mut Vec<ContactManifold<M, C>>,
     pool: Box<Pool<M, C>>,
-    /// Length of the prefix of the host's list that stays in place. Zero once `pool.next` is in use,
-    /// which then holds all manifolds of this query.
+    /// Length of the prefix of the host's list that stays in place. Zero once `pool.next` is in
+    /// use, which then holds all manifolds of this query.
     in_place: usize,
     /// True if the last query left patches; `None` if not known.
     had_patches: Option<bool>,
@@ -118,7 +118,8 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         self.pool.spare.pop().unwrap_or_default()
     }
 
-    /// Takes the host's manifold of a part with the most similar normal; an empty one if none is similar.
+    /// Takes the host's manifold of a part with the most similar normal; an empty one if none is
+    /// similar.
     fn take_like(&mut self, part: u32, normal: Vec3) -> ContactManifold<M, C> {
         // Manifolds that were taken are empty and have a normal of zero.
         let olds = of_part(&self.pool.old_parts, part, |(part, _)| *part);
@@ -245,8 +246,8 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         }
     }
 
-    /// Writes a manifold of the deepest of the chosen points and those that have its normal, and removes
-    /// them from the list.
+    /// Writes a manifold of the deepest of the chosen points and those that have its normal, and
+    /// removes them from the list.
     fn write_patch(
         &mut self,
         plan: PatchPlan,
@@ -332,8 +333,8 @@ pub(super) fn write_points<M, C: Default + Copy>(
     [manifold.local_n1, manifold.local_n2] = normals.map(without_noise);
 }
 
-/// Returns a unit vector without components that are noise beside 1. Products of such components are subnormal numbers, which
-/// slow Rapier's solver down by a fifth.
+/// Returns a unit vector without components that are noise beside 1. Products of such components
+/// are subnormal numbers, which slow Rapier's solver down by a fifth.
 fn without_noise(normal: Vec3) -> Vec3 {
     Vec3::select(normal.abs().cmplt(Vec3::splat(Real::EPSILON)), Vec3::ZERO, normal)
 }
@@ -375,8 +376,9 @@ fn of_part<T>(list: &[T], part: u32, part_of: impl Fn(&T) -> u32) -> Range<usize
     first..first + list[first..].partition_point(|one| part_of(one) == part)
 }
 
-/// Takes the data of the old point with the features of `point`, or else of the nearest one with its direction, `within` a
-/// distance. Returns empty data without such a point. Moving points pass from triangle to triangle.
+/// Takes the data of the old point with the features of `point`, or else of the nearest one with
+/// its direction, `within` a distance. Returns empty data without such a point. Moving points pass
+/// from triangle to triangle.
 fn take_nearest<C: Copy + Default>(
     point: &TrackedContact<()>,
     normal: Vec3,

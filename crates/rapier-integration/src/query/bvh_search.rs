@@ -1,4 +1,5 @@
-//! Queries of two meshes over Parry's BVHs: best-first search for a pair of triangles, down both at once.
+//! Queries of two meshes over Parry's BVHs: best-first search for a pair of triangles, down both at
+//! once.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -35,7 +36,8 @@ struct Node {
     triangle: Option<u32>,
 }
 
-/// The normal of the first impact so far, in both frames. Bodies meet no sooner than along the normal.
+/// The normal of the first impact so far, in both frames. Bodies meet no sooner than along the
+/// normal.
 #[derive(Copy, Clone)]
 struct FirstNormal {
     normals: [DVec3; 2],
@@ -50,8 +52,8 @@ impl FirstNormal {
     }
 }
 
-/// Difference of distances that counts as none, in [roundings](BvhSearch::rounding). Higher: less exact distances. Lower: searches
-/// visit all pairs of parallel faces.
+/// Difference of distances that counts as none, in [roundings](BvhSearch::rounding). Higher: less
+/// exact distances. Lower: searches visit all pairs of parallel faces.
 const TIES: f64 = 4.0;
 
 impl BvhSearch<'_> {
@@ -84,7 +86,8 @@ impl BvhSearch<'_> {
         }
     }
 
-    /// Returns the first impact that `counts` of mesh 2, which moves by `velocity` in the frame of mesh 1.
+    /// Returns the first impact that `counts` of mesh 2, which moves by `velocity` in the frame of
+    /// mesh 1.
     pub(super) fn cast(
         &self,
         velocity: Vector,
@@ -100,7 +103,8 @@ impl BvhSearch<'_> {
             let [one, two] = [0, 1].map(|i| (triangles[i], meshes[i].corners(triangles[i])));
             Cast::of_triangles(placement, one, two, velocity, &options, latest, &counts)
         };
-        // Bounds of meshes in each other are zero for many pairs, so a search visits many before one that touches.
+        // Bounds of meshes in each other are zero for many pairs, so a search visits many before
+        // one that touches.
         if options.stop_at_penetration
             && let Some(meeting) = self.meeting()
             && let Some(found) = cast([meeting.triangle1, meeting.triangle2], 0.0)
@@ -143,8 +147,8 @@ impl BvhSearch<'_> {
         is_bound.then(|| FirstNormal { normals: self.normals(pair), approach })
     }
 
-    /// Visits pairs of triangles, the least bound first, while bounds are at most the limit. `visit`
-    /// gets the limit and may return a lower one.
+    /// Visits pairs of triangles, the least bound first, while bounds are at most the limit.
+    /// `visit` gets the limit and may return a lower one.
     fn search(
         &self,
         mut limit: f64,
@@ -354,8 +358,8 @@ impl PlacedBox {
         normal1.dot(other.centres[0] - self.centres[0]) - reach
     }
 
-    /// Earliest time at which the boxes are within `target` of each other, where the other one moves;
-    /// infinite if they pass each other.
+    /// Earliest time at which the boxes are within `target` of each other, where the other one
+    /// moves; infinite if they pass each other.
     fn time(&self, other: &Self, velocity: DVec3, target: f64) -> f64 {
         let offset = other.centres[0] - self.centres[0];
         let reach = self.extents[0] + other.extents[0] + target;

@@ -137,8 +137,9 @@ impl<'a> MeshQuery<'a> {
         Some(Found::of_pair(&pair, &placement).hit(cast.time, status(cast.is_penetrating)))
     }
 
-    /// Returns false if the surfaces are nearer to each other beside the points of an impact. A body that slides along a
-    /// wall within the target distance comes to the next triangles of the wall all the time.
+    /// Returns false if the surfaces are nearer to each other beside the points of an impact. A
+    /// body that slides along a wall within the target distance comes to the next triangles of the
+    /// wall all the time.
     fn is_minimum(&self, Cast { time, pair, .. }: &Cast, velocity: Vector) -> bool {
         let FoundPair { triangle1, triangle2, contact, origin, .. } = pair;
         let TriangleContact { normal, distance, features, point1, point2 } = *contact;

@@ -1,8 +1,9 @@
 //! Queries without manifolds, for a pair of meshes or a mesh and a convex shape.
 //!
 //! Two meshes that have trees are searched by these ([`meshes`]), all others by Parry's BVHs
-//! ([`bvh_search`]). Intersection tests use trees of registered meshes alone. A mesh and a convex shape
-//! use the BVH of the mesh. [`nonlinear`] and [`moving`] cast along the curves of rigid motions.
+//! ([`bvh_search`]). Intersection tests use trees of registered meshes alone. A mesh and a convex
+//! shape use the BVH of the mesh. [`nonlinear`] and [`moving`] cast along the curves of rigid
+//! motions.
 
 mod bvh_search;
 mod meshes;

@@ -18,17 +18,17 @@ use super::Found;
 use super::nonlinear::{NonlinearCast, lever, place, turned};
 use crate::pair::{ConvexSearch, STRETCH, lowest};
 
-/// Duration of the first window, as a multiple of the time in which the nearest triangle may be met.
-/// Higher: more triangles that are not met are advanced; lower: more windows.
+/// Duration of the first window, as a multiple of the time in which the nearest triangle may be
+/// met. Higher: more triangles that are not met are advanced; lower: more windows.
 const WINDOW: f64 = 4.0;
 
 /// Steps along one plane. Higher: fewer contacts are computed; lower: planes that have turned away
 /// are left sooner.
 const PLANE_STEPS: usize = 64;
 
-/// Distance at the start up to which a shape is in contact, as a share of its thickness. In contact it
-/// may sink deeper by the same length. Higher: shapes that slide into a wall sink deeper; lower: rolling
-/// shapes stop at internal edges.
+/// Distance at the start up to which a shape is in contact, as a share of its thickness. In contact
+/// it may sink deeper by the same length. Higher: shapes that slide into a wall sink deeper; lower:
+/// rolling shapes stop at internal edges.
 const SINK: f64 = 0.1;
 
 /// A mesh and a convex shape in motion.
@@ -36,7 +36,8 @@ pub(super) struct MovingConvex<'a, 'q> {
     search: ConvexSearch<'a>,
     cast: &'q NonlinearCast<'q>,
     options: AdvanceOptions,
-    /// Depth that the shape must gain to come out behind a triangle, as in Parry. For a half-space, the depth that the mesh must gain.
+    /// Depth that the shape must gain to come out behind a triangle, as in Parry. For a half-space,
+    /// the depth that the mesh must gain.
     thickness: f64,
     /// Depth of the contact at the start, if there is one and the cast does not stop there.
     sunk: Option<f64>,
@@ -93,8 +94,9 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         }
     }
 
-    /// Returns the duration of the next window, and the normal of the nearest triangle. It is a unit vector of space toward the
-    /// mesh. A mesh that does not turn takes one window and has no normal.
+    /// Returns the duration of the next window, and the normal of the nearest triangle. It is a
+    /// unit vector of space toward the mesh. A mesh that does not turn takes one window and has no
+    /// normal.
     fn window(&self, from: f64, previous: f64) -> Option<(f64, Option<DVec3>)> {
         let AdvanceOptions { end, speed_bound, tolerance, .. } = self.options;
         if self.sweep().is_some() {
@@ -110,8 +112,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         Some((if window > 0.0 { window } else { f64::INFINITY }, axis))
     }
 
-    /// A box of the mesh's frame that holds the shape at the start, however it turns, and its velocity.
-    /// `None` if the mesh turns, or a half-space.
+    /// A box of the mesh's frame that holds the shape at the start, however it turns, and its
+    /// velocity. `None` if the mesh turns, or a half-space.
     fn sweep(&self) -> Option<(Aabb, DVec3)> {
         let search = &self.search;
         let [mesh, shape] = self.motions();
@@ -163,8 +165,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         self.meets_again(&mut one, found.time, until)
     }
 
-    /// True if an impact counts. An impact at the start counts only if the shape then approaches by its thickness, or sinks
-    /// deeper.
+    /// True if an impact counts. An impact at the start counts only if the shape then approaches by
+    /// its thickness, or sinks deeper.
     fn counts(&self, one: &mut MovingTriangle<'_>, found: &Advance<Found>, from: f64) -> bool {
         let Self { cast, options, thickness, .. } = self;
         if cast.stop_at_penetration {
@@ -187,8 +189,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         Some(self.sunk?.max(0.0) + SINK * self.thickness)
     }
 
-    /// First impact after one that does not count. A shape that turns may come down with another end,
-    /// so samples of its motion are tested, like in Parry.
+    /// First impact after one that does not count. A shape that turns may come down with another
+    /// end, so samples of its motion are tested, like in Parry.
     fn meets_again(
         &self,
         one: &mut MovingTriangle<'_>,
@@ -236,7 +238,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
 struct Front {
     /// The axis across the plane, in the frame of the mesh. It points from the shape to the mesh.
     in_mesh: DVec3,
-    /// Heights of the shape, and of a ball that holds it however it turns, above the origin of the mesh.
+    /// Heights of the shape, and of a ball that holds it however it turns, above the origin of the
+    /// mesh.
     heights: [f64; 2],
     /// Speeds of the shape, and of the ball, toward the centre of the mesh's motion.
     speeds: [f64; 2],
@@ -264,8 +267,9 @@ impl Front {
         }
     }
 
-    /// Returns a time in which the shape does not reach a part of the mesh. The part has the least coordinate `lowest` along the
-    /// axis, and is at most `lever` from the centre of the mesh's motion.
+    /// Returns a time in which the shape does not reach a part of the mesh. The part has the least
+    /// coordinate `lowest` along the axis, and is at most `lever` from the centre of the mesh's
+    /// motion.
     fn clear(&self, lowest: f64, lever: f64) -> f64 {
         let clear = [0, 1].map(|i| {
             let gap = lowest - self.heights[i] - self.tolerance;
@@ -314,8 +318,8 @@ impl<'a> MovingTriangle<'a> {
         Self { moving, triangle, corners, lever: farthest, acceleration }
     }
 
-    /// Returns the time for which a plane `depth` below the triangle separates it from the shape. It is
-    /// infinite if that holds until `end`.
+    /// Returns the time for which a plane `depth` below the triangle separates it from the shape.
+    /// It is infinite if that holds until `end`.
     fn clear_of_own_plane(&self, depth: f64, from: f64, end: f64) -> f64 {
         let MovingConvex { search, .. } = self.moving;
         let mesh = place(self.moving.motions()[0], from);
@@ -327,12 +331,12 @@ impl<'a> MovingTriangle<'a> {
         self.clear_along(if is_toward { normal } else { -normal }, depth, from, end)
     }
 
-    /// Returns the time for which a plane across `axis` separates the shape from the triangle. It is
-    /// infinite if that holds until `end`. `axis` is a unit vector of space from the shape to the
-    /// triangle, which is moved by `depth` along it.
+    /// Returns the time for which a plane across `axis` separates the shape from the triangle. It
+    /// is infinite if that holds until `end`. `axis` is a unit vector of space from the shape to
+    /// the triangle, which is moved by `depth` along it.
     ///
-    /// A point leaves the chord between its places at two times by at most `a t² / 8`. Here `a` bounds
-    /// its acceleration, and `t` is the time between. The gap obeys the same bound.
+    /// A point leaves the chord between its places at two times by at most `a t² / 8`. Here `a`
+    /// bounds its acceleration, and `t` is the time between. The gap obeys the same bound.
     fn clear_along(&self, axis: DVec3, depth: f64, from: f64, end: f64) -> f64 {
         let tolerance = self.moving.options.tolerance;
         let front = Front::new(self.moving, axis, from);
@@ -372,7 +376,8 @@ impl<'a> MovingTriangle<'a> {
         time - from
     }
 
-    /// Returns the distance from the greatest coordinate of the shape to the least one of the triangle, along an axis of space.
+    /// Returns the distance from the greatest coordinate of the shape to the least one of the
+    /// triangle, along an axis of space.
     fn gap(&self, axis: DVec3, time: f64) -> f64 {
         let MovingConvex { search, .. } = self.moving;
         let [mesh, shape] = self.moving.motions().map(|motion| place(motion, time));

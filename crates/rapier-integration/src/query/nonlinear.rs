@@ -10,8 +10,8 @@ use sbbk_core::volumes::Sphere;
 use super::Found;
 use crate::pair::STRETCH;
 
-/// Distance at which bodies have met, as a share of the radius of the smaller body. Higher: fewer steps,
-/// earlier impacts; lower: more steps.
+/// Distance at which bodies have met, as a share of the radius of the smaller body. Higher: fewer
+/// steps, earlier impacts; lower: more steps.
 const TOLERANCE: f64 = 1.0e-6;
 
 /// Distance at which bodies have met, as a share of the distance of their centres: the rounding of
@@ -59,8 +59,8 @@ impl NonlinearCast<'_> {
 
     /// Returns the first impact of two meshes, given balls around them.
     ///
-    /// Casts that do not stop at penetration skip pairs that touch at the start and part. Parry does the
-    /// same.
+    /// Casts that do not stop at penetration skip pairs that touch at the start and part. Parry
+    /// does the same.
     pub(super) fn first_impact(
         &self,
         bodies: &mut impl Bodies<Pair = FoundPair>,
@@ -78,10 +78,11 @@ impl NonlinearCast<'_> {
         })
     }
 
-    /// Returns the first and last time at which balls overlap that hold the bodies however these turn; `None` if they never do.
+    /// Returns the first and last time at which balls overlap that hold the bodies however these
+    /// turn; `None` if they never do.
     ///
-    /// The centres of motions move in straight lines. With `c` and `v` from centre 1 to centre 2, the times solve
-    /// `|c + v t| = R`. Here `R` is the sum of the radii.
+    /// The centres of motions move in straight lines. With `c` and `v` from centre 1 to centre 2,
+    /// the times solve `|c + v t| = R`. Here `R` is the sum of the radii.
     pub(super) fn meeting_of_balls(
         &self,
         balls: [Sphere; 2],
@@ -119,11 +120,12 @@ impl NonlinearCast<'_> {
 
     /// Returns a bound on the speed of points of one body against the other.
     ///
-    /// Let `v` be the velocity of centre 2 against centre 1, `w` the angular velocity of a body, and
-    /// `r` its lever. Then `|v| + |w1| r1 + |w2| r2` is a bound. In the frame of body 1 another bound is
-    /// `|v - w1 × c| + |w2 - w1| r2`, with `c` from centre 1 to centre 2. The vector `c` is linear in
-    /// time, so this bound is greatest at the start or at the end. It does not depend on the lever of
-    /// body 1, so it is finite for a half-space that turns. A third bound swaps the bodies.
+    /// Let `v` be the velocity of centre 2 against centre 1, `w` the angular velocity of a body,
+    /// and `r` its lever. Then `|v| + |w1| r1 + |w2| r2` is a bound. In the frame of body 1 another
+    /// bound is `|v - w1 × c| + |w2 - w1| r2`, with `c` from centre 1 to centre 2. The vector `c`
+    /// is linear in time, so this bound is greatest at the start or at the end. It does not depend
+    /// on the lever of body 1, so it is finite for a half-space that turns. A third bound swaps the
+    /// bodies.
     fn speed_bound(&self, balls: [Sphere; 2]) -> f64 {
         let [motion1, motion2] = self.motions;
         let [lever1, lever2] = [0, 1].map(|i| lever(self.motions[i], &balls[i]));
@@ -146,8 +148,8 @@ impl NonlinearCast<'_> {
         least * (1.0 + STRETCH)
     }
 
-    /// True if the points of a contact, at their velocities of a time, approach by more than a length
-    /// until the end.
+    /// True if the points of a contact, at their velocities of a time, approach by more than a
+    /// length until the end.
     pub(super) fn approaches(&self, found: &Found, time: f64, length: f64) -> bool {
         let rotations = self.motions.map(|motion| place(motion, time).rotation);
         let [velocity1, velocity2] = [0, 1].map(|i| {
@@ -159,9 +161,9 @@ impl NonlinearCast<'_> {
         (velocity1 - velocity2).dot(normal) * (f64::from(self.end) - time) > length
     }
 
-    /// Returns sample times for a rotating body that touches at the start. Between samples it moves by
-    /// at most its thickness and turns by at most [`TURN`], unless that takes too many samples. A body
-    /// without thickness or rotation has no samples.
+    /// Returns sample times for a rotating body that touches at the start. Between samples it moves
+    /// by at most its thickness and turns by at most [`TURN`], unless that takes too many samples.
+    /// A body without thickness or rotation has no samples.
     pub(super) fn looks(&self, thickness: Real) -> impl Iterator<Item = f64> {
         let [motion1, motion2] = self.motions;
         let is_needed = thickness > 0.0 && motion1.angvel != motion2.angvel;

@@ -32,9 +32,9 @@
 //! So `D ≤ S` passes `fl(D²) ≤ fl(fl(s² K) + A)` if `K ≥ (1 + u)⁵ / (1 − u)⁷ = 1 + 12 u + O(u²)`;
 //! `K = 1 + 16 u` is the next float with room for the `O(u²)`. Underflow costs at most 2⁻¹⁵⁰ for
 //! each of the three squares of `D²` and for `s²` and `s² K`, together less than 2⁻¹⁴⁷. Half a
-//! subnormal margin costs at most 2⁻¹⁵⁰ on a radius. `A = 2⁻¹²⁶` covers all of this. Overflow is monotonic, and
-//! `∞ ≤ ∞` passes. In the other direction a pair that passes has
-//! `D ≤ S (1 + 16 u) + 2⁻⁶²`.
+//! subnormal margin costs at most 2⁻¹⁵⁰ on a radius. `A = 2⁻¹²⁶` covers all of this. Overflow is
+//! monotonic, and `∞ ≤ ∞` passes. In the other direction a pair that passes has `D ≤ S (1 + 16 u) +
+//! 2⁻⁶²`.
 
 mod lanes;
 mod tree;

@@ -127,7 +127,8 @@ impl BlockTree {
         }
     }
 
-    /// Reports each pair of overlapping boxes once, if one of the two has changed. Then marks all objects as unchanged.
+    /// Reports each pair of overlapping boxes once, if one of the two has changed. Then marks all
+    /// objects as unchanged.
     pub(super) fn take_pairs(&mut self, mut on_pair: impl FnMut(u32, u32)) {
         if !self.objects.is_empty() {
             self.descend(self.levels.len() - 1, [0, 0], &mut on_pair);

@@ -1,4 +1,5 @@
-//! The contact points between a triangle and another one, or a feature of a shape, that face each other along a normal.
+//! The contact points between a triangle and another one, or a feature of a shape, that face each
+//! other along a normal.
 //!
 //! Seen along the normal, the overlap of two triangles is a polygon. Its corners are vertices of
 //! one triangle inside the other, and crossings of two edges. The distance along the normal is
@@ -92,8 +93,8 @@ pub(super) fn clip_triangles(
     });
 }
 
-/// Calls `found` with the corners of the overlap of a triangle and a polygon, seen along `normal`. Each has its points on both, the
-/// distance between these, and its features.
+/// Calls `found` with the corners of the overlap of a triangle and a polygon, seen along `normal`.
+/// Each has its points on both, the distance between these, and its features.
 #[inline(always)]
 pub(super) fn clip_polygon(
     t: &Triangle,
@@ -141,16 +142,16 @@ fn crossing_points(
 }
 
 /// Place on an edge that is closest to being in line with a point, as a fraction of the edge. Both
-/// places of a crossing are uncertain if the edges are near parallel; this one fits the other. The point is seen from the
-/// start of the edge.
+/// places of a crossing are uncertain if the edges are near parallel; this one fits the other. The
+/// point is seen from the start of the edge.
 #[cold]
 fn along_in_line(point: DVec3, edge: DVec3, normal: DVec3) -> f64 {
     let shadow = edge - normal * edge.dot(normal);
     within_edge(point.dot(shadow) / shadow.length_squared())
 }
 
-/// Calls `found` with the vertices whose bits are set, their feet in the plane of a face along `normal`, and their heights.
-/// `may_be_thin`: false for a face that is a part of a polygon.
+/// Calls `found` with the vertices whose bits are set, their feet in the plane of a face along
+/// `normal`, and their heights. `may_be_thin`: false for a face that is a part of a polygon.
 #[inline(always)]
 fn for_feet(
     vertices: &[DVec3],

@@ -49,8 +49,9 @@ const ROUNDING: f64 = 1.0e-6;
 type OutwardAxis = (f64, DVec3);
 
 impl<'t> Outward<'t> {
-    /// `outward` has the signs with which the normals lead out of solids; `None` for triangles of sheets. `cones` has squares of
-    /// the least cosines between the normals and extremal directions.
+    /// `outward` has the signs with which the normals lead out of solids; `None` for triangles of
+    /// sheets. `cones` has squares of the least cosines between the normals and extremal
+    /// directions.
     pub fn new(triangles: [&'t [DVec3; 3]; 2], outward: [Option<f64>; 2], cones: [f64; 2]) -> Self {
         let triangles = triangles.map(Triangle::new);
         let normal = |i: usize| triangles[i].area_vector().normalize_or_zero();
@@ -62,8 +63,9 @@ impl<'t> Outward<'t> {
 
     /// Returns the contact along the extremal axis of least overlap, if that is at most `most`.
     ///
-    /// `is_extremal` returns true if no neighbour of a feature of triangle 1 (0) or 2 (1) is farther in a direction.
-    /// The deepest points give the distance; if these show less than the overlap, there is no contact.
+    /// `is_extremal` returns true if no neighbour of a feature of triangle 1 (0) or 2 (1) is
+    /// farther in a direction. The deepest points give the distance; if these show less than the
+    /// overlap, there is no contact.
     pub fn extremal(
         &self,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
@@ -75,8 +77,8 @@ impl<'t> Outward<'t> {
         is_shown.then_some(contact)
     }
 
-    /// Returns the contact along the outward axis of least overlap, if a contact with that normal `may_count`. Extremal axes
-    /// come first.
+    /// Returns the contact along the outward axis of least overlap, if a contact with that normal
+    /// `may_count`. Extremal axes come first.
     ///
     /// See [`extremal`](Self::extremal) for `is_extremal`.
     pub fn least(
@@ -138,7 +140,8 @@ impl<'t> Outward<'t> {
         })
     }
 
-    /// Returns the outward axis of least overlap. Returns `None` if that is less than the overlap of a gap, `widest`.
+    /// Returns the outward axis of least overlap. Returns `None` if that is less than the overlap
+    /// of a gap, `widest`.
     fn least_axis(&self, widest: f64) -> Option<OutwardAxis> {
         let mut least: Option<OutwardAxis> = None;
         self.for_each(false, |direction, _| {
@@ -157,8 +160,9 @@ impl<'t> Outward<'t> {
         (min2 - max1, axis)
     }
 
-    /// Calls `visit` with each direction that leads out of the solids, of any length, and its heights along both normals,
-    /// until `visit` breaks. With `in_cones`, may leave out directions beyond one of the cones.
+    /// Calls `visit` with each direction that leads out of the solids, of any length, and its
+    /// heights along both normals, until `visit` breaks. With `in_cones`, may leave out directions
+    /// beyond one of the cones.
     fn for_each(&self, in_cones: bool, mut visit: impl FnMut(DVec3, [f64; 2]) -> ControlFlow<()>) {
         let [normal1, normal2] = self.normals;
         let mut consider = |direction: DVec3| {
@@ -183,7 +187,8 @@ impl<'t> Outward<'t> {
         self.for_each_product(in_cones, consider);
     }
 
-    /// Calls `consider` with the products of edges whose signs lead out of both triangles, until `consider` breaks.
+    /// Calls `consider` with the products of edges whose signs lead out of both triangles, until
+    /// `consider` breaks.
     #[inline(always)]
     fn for_each_product(&self, in_cones: bool, mut consider: impl FnMut(DVec3) -> ControlFlow<()>) {
         let [t1, t2] = &self.triangles;
@@ -215,8 +220,8 @@ impl<'t> Outward<'t> {
     }
 }
 
-/// Returns the contact of overlapping triangles along a unit axis by which triangle 2 leaves triangle 1. `None` if no points are
-/// in line with the axis.
+/// Returns the contact of overlapping triangles along a unit axis by which triangle 2 leaves
+/// triangle 1. `None` if no points are in line with the axis.
 pub fn contact_along(triangles: [&[DVec3; 3]; 2], axis: DVec3) -> Option<TriangleContact> {
     along(triangles.map(Triangle::new).each_ref(), axis)
 }

@@ -1,8 +1,9 @@
-//! Signs of the vertices of a triangle and of a polygon against the edges of the other, on a plane of view.
+//! Signs of the vertices of a triangle and of a polygon against the edges of the other, on a plane
+//! of view.
 //!
-//! Each vertex of the triangle has signs against all edges of the polygon, and each edge against all corners. The corners
-//! and edges of the polygon take the four SIMD lanes. Lanes beyond the last corner repeat the first one, so the next lane
-//! always has the next corner.
+//! Each vertex of the triangle has signs against all edges of the polygon, and each edge against
+//! all corners. The corners and edges of the polygon take the four SIMD lanes. Lanes beyond the
+//! last corner repeat the first one, so the next lane always has the next corner.
 
 use super::triangle::{NEXT, Polygon, Triangle};
 use glamx::DVec3;
@@ -12,7 +13,8 @@ use wide::f64x4;
 struct Sides {
     /// Twice the areas between edges and vertices.
     areas: f64x4,
-    /// Lanes whose vertices are left of the edges. Vertices in neither mask are on the edge up to rounding.
+    /// Lanes whose vertices are left of the edges. Vertices in neither mask are on the edge up to
+    /// rounding.
     left: u32,
     right: u32,
 }
@@ -66,8 +68,8 @@ impl ShadowSigns {
         }
     }
 
-    /// Returns the vertices of the triangle and of the polygon that are inside the other or on its border. A vertex on
-    /// all lines does not count: the other shadow has no width.
+    /// Returns the vertices of the triangle and of the polygon that are inside the other or on its
+    /// border. A vertex on all lines does not count: the other shadow has no width.
     #[inline(always)]
     pub fn inside(&self) -> [u32; 2] {
         let lanes = self.lanes();
@@ -80,8 +82,8 @@ impl ShadowSigns {
         [is_inside(0) | is_inside(1) << 1 | is_inside(2) << 2, inside & lanes]
     }
 
-    /// Bit `3 j + i` for each edge `i` of the triangle that crosses edge `j` of the polygon. Edge `i` runs from vertex `i` to the
-    /// next.
+    /// Bit `3 j + i` for each edge `i` of the triangle that crosses edge `j` of the polygon. Edge
+    /// `i` runs from vertex `i` to the next.
     #[inline(always)]
     pub fn crossings(&self) -> u32 {
         let next = |lanes: u32| lanes >> 1 | (lanes & 1) << 3;
@@ -159,7 +161,8 @@ mod tests {
             count in 2_usize..=4,
             signs in prop::array::uniform24(-1_i32..=1),
         ) {
-            // Signs of the lanes against a vertex or an edge. Lanes of no corner repeat the first one.
+            // Signs of the lanes against a vertex or an edge. Lanes of no corner repeat the first
+            // one.
             let sign = |of: usize, j: usize| signs[4 * of + if j < count { j } else { 0 }];
             let sides = |of: usize| {
                 let mask = |side: i32| (0..4).filter(|&j| sign(of, j) == side).fold(0, |m, j| m | 1 << j);

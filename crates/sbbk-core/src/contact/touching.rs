@@ -1,9 +1,9 @@
 //! Triangles that no axis clearly separates and no axis clearly lets overlap: they touch, or lie
 //! in one plane or on one line.
 //!
-//! This case is rare, so the search is complete. It takes all fifteen feature distances, and the axes
-//! in the planes of the triangles besides the other eleven. If triangles cross by a depth `d`, a
-//! move by `d` makes them touch, so two features were at most `d` apart. Triangles whose features
+//! This case is rare, so the search is complete. It takes all fifteen feature distances, and the
+//! axes in the planes of the triangles besides the other eleven. If triangles cross by a depth `d`,
+//! a move by `d` makes them touch, so two features were at most `d` apart. Triangles whose features
 //! are farther apart than the depth do not cross.
 
 use super::TriangleContact;

@@ -19,8 +19,8 @@ impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
         Self { frame, test }
     }
 
-    /// Calls `found` with triangles of the field and indices of triangles of `batch`: all pairs within the margin, and a few
-    /// others.
+    /// Calls `found` with triangles of the field and indices of triangles of `batch`: all pairs
+    /// within the margin, and a few others.
     pub fn visit(&self, batch: &LeafBatch, mut found: impl FnMut(FieldTriangle, u32)) {
         let Self { frame, test } = self;
         let corners = (0..batch.count()).flat_map(|lane| batch.corners(lane));

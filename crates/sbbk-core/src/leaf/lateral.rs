@@ -1,7 +1,8 @@
 //! Lateral culling: rejects triangles that lie beside each other instead of over each other.
 //!
-//! The nearest points of two small triangles of bodies that face each other are mostly aslant. They are no local minima where
-//! the surface bends less ([`MinimumCones`](crate::surface::MinimumCones)), and need no exact test.
+//! The nearest points of two small triangles of bodies that face each other are mostly aslant. They
+//! are no local minima where the surface bends less
+//! ([`MinimumCones`](crate::surface::MinimumCones)), and need no exact test.
 //!
 //! Let `n` be the normal of a triangle, `m` the direction in its plane away from one of its edges,
 //! and `g` the least distance of the other triangle beyond that edge. Let `h` be the greatest
@@ -43,8 +44,9 @@ const FINE: f32 = 8.0;
 /// Squared lengths of products below this are underflow.
 const TINY: f32 = 1.0e-30;
 
-/// Pairs of triangles that may be rejected. The nearest points lie on no face and are farther apart than a distance. The way
-/// between them leans from the normal of one triangle by more than an angle.
+/// Pairs of triangles that may be rejected. The nearest points lie on no face and are farther apart
+/// than a distance. The way between them leans from the normal of one triangle by more than an
+/// angle.
 #[derive(Copy, Clone, Debug)]
 pub struct LateralCulling {
     distance: f32,
@@ -71,7 +73,8 @@ impl LateralCulling {
         }
     }
 
-    /// Returns the lanes whose pairs may be rejected, as bits: those that lean from triangle 1, and from triangle 2.
+    /// Returns the lanes whose pairs may be rejected, as bits: those that lean from triangle 1, and
+    /// from triangle 2.
     #[inline(always)]
     pub(super) fn beside(&self, frame: &LeafFrame, one: &Corners, two: &Corners) -> [u32; 2] {
         let extent = largest(sub(one.max, one.min));

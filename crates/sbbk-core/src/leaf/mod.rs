@@ -2,7 +2,8 @@
 //!
 //! The test looks for a separating axis in SIMD lanes: one triangle of leaf 1 against the batch of
 //! leaf 2. It is conservative and nearly exact. Pairs that pass go to the exact
-//! [`contact`](mod@crate::contact) in f64. A [`LeafBatch`] comes from a tree or any other hierarchy.
+//! [`contact`](mod@crate::contact) in f64. A [`LeafBatch`] comes from a tree or any other
+//! hierarchy.
 
 mod lateral;
 mod placed;
@@ -52,8 +53,9 @@ impl LeafTest {
         self.not_apart(batch1, batch2, apart, found);
     }
 
-    /// Like [`survivors`](Self::survivors). With `lateral`, leaves out pairs whose nearest points are beside one of the
-    /// triangles. `may_reject` returns true for a triangle whose pairs may be left out, by its leaf (0 or 1) and lane.
+    /// Like [`survivors`](Self::survivors). With `lateral`, leaves out pairs whose nearest points
+    /// are beside one of the triangles. `may_reject` returns true for a triangle whose pairs may be
+    /// left out, by its leaf (0 or 1) and lane.
     #[inline]
     pub fn survivors_in_front(
         &self,

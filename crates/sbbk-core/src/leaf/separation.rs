@@ -169,7 +169,8 @@ pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
     products_separate(&corners, [normal1, normal2], lost, margin_squared, apart)
 }
 
-/// The lanes of `known`, and those whose triangles a product of edges separates by more than the margin.
+/// The lanes of `known`, and those whose triangles a product of edges separates by more than the
+/// margin.
 #[inline(always)]
 fn products_separate(
     corners: &[[V3<f32x4>; 3]; 2],

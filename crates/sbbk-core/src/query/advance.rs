@@ -5,8 +5,8 @@
 //! (Mirtich, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 1996).
 //!
 //! Bodies may touch at the start ([`advance_from_contact`]). A pair of parts that touches is an
-//! impact if it approaches along the normal of the contact. The search excludes other such pairs for
-//! good and advances to the first touch of the rest. A start deep inside makes each step as
+//! impact if it approaches along the normal of the contact. The search excludes other such pairs
+//! for good and advances to the first touch of the rest. A start deep inside makes each step as
 //! expensive as a query for all contacts.
 
 use crate::traverse::Placement;
@@ -115,11 +115,12 @@ pub struct Advance<P> {
     pub has_converged: bool,
 }
 
-/// Returns the first time at which body 2, at `placement_at(time)` in the frame of body 1, is within
-/// the tolerance of body 1.
+/// Returns the first time at which body 2, at `placement_at(time)` in the frame of body 1, is
+/// within the tolerance of body 1.
 ///
-/// Bodies that may meet before the next f64 after a time have met at that time. `None` if there is no such time until the end,
-/// or if a number is not finite. Bodies that are within the tolerance at the end, and would touch later, may have none.
+/// Bodies that may meet before the next f64 after a time have met at that time. `None` if there is
+/// no such time until the end, or if a number is not finite. Bodies that are within the tolerance
+/// at the end, and would touch later, may have none.
 pub fn advance<B: Bodies>(
     bodies: &mut B,
     placement_at: impl Fn(f64) -> Placement,

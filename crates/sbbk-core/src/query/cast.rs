@@ -60,19 +60,20 @@ pub struct Cast<P = FoundPair> {
 }
 
 /// A triangle pair has come as close as the target if it is this much farther, as a share of edges
-/// and travel. At this share of the speed it does not approach. Higher: impacts are early by as much. Lower:
-/// rounding keeps them from being noticed before the steps are used up.
+/// and travel. At this share of the speed it does not approach. Higher: impacts are early by as
+/// much. Lower: rounding keeps them from being noticed before the steps are used up.
 const ARRIVED: f64 = 1.0e-12;
 
-/// Difference of times that counts as none, as a share. Higher: later impacts count. Lower: rounding tells the impacts of
-/// parallel faces apart, and a cast computes all of them.
+/// Difference of times that counts as none, as a share. Higher: later impacts count. Lower:
+/// rounding tells the impacts of parallel faces apart, and a cast computes all of them.
 const AT_ONCE: f64 = 1.0e-11;
 
-/// Distance at the start, in target distances, up to which a body may slide along the other. Higher: slower casts. Lower: rounding lets bodies that slide catch on edges within walls.
+/// Distance at the start, in target distances, up to which a body may slide along the other.
+/// Higher: slower casts. Lower: rounding lets bodies that slide catch on edges within walls.
 const NEAR_TARGET: f64 = 1.001;
 
-/// Target distances that are tried before zero, and the ratio of each to the last one. More: more time beside walls. Fewer: impacts
-/// that begin to count below the target distance are late.
+/// Target distances that are tried before zero, and the ratio of each to the last one. More: more
+/// time beside walls. Fewer: impacts that begin to count below the target distance are late.
 const TARGETS: usize = 12;
 const NEXT_TARGET: f32 = 0.75;
 
@@ -80,8 +81,9 @@ const NEXT_TARGET: f32 = 0.75;
 /// steps.
 const STEP_LIMIT: usize = 100;
 
-/// Returns the first impact that `counts`. Mesh 2 is placed at `placement` in the frame of mesh 1 and moves by
-/// `velocity` there. Returns `None` without an impact until `options.max_time`, and for NaN or infinite numbers.
+/// Returns the first impact that `counts`. Mesh 2 is placed at `placement` in the frame of mesh 1
+/// and moves by `velocity` there. Returns `None` without an impact until `options.max_time`, and
+/// for NaN or infinite numbers.
 pub fn cast(
     trees: (&Tree, &Tree),
     placement: Placement,
@@ -134,9 +136,10 @@ pub fn cast(
     first
 }
 
-/// Returns the first impact at a place where the bodies are nearest to each other. Bodies that slide within the target distance come
-/// to other parts of a wall all the time. From farther away, the first impact always is at such a place. `first_impact` finds the
-/// first one that counts. `are_within` tells if the bodies are within a distance at the start.
+/// Returns the first impact at a place where the bodies are nearest to each other. Bodies that
+/// slide within the target distance come to other parts of a wall all the time. From farther away,
+/// the first impact always is at such a place. `first_impact` finds the first one that counts.
+/// `are_within` tells if the bodies are within a distance at the start.
 pub fn first_minimum<C>(
     options: &CastOptions,
     first_impact: impl Fn(&dyn Fn(&C) -> bool) -> Option<C>,
@@ -152,9 +155,9 @@ pub fn first_minimum<C>(
     if may_slide { first_impact(&is_minimum) } else { Some(first) }
 }
 
-/// Returns the first impact that `counts`, among those at a target distance and at less and less. An impact at distance zero
-/// always counts. `cast` returns the impact at a target distance, from the impact at the last one. `distance` returns the
-/// distance of an impact.
+/// Returns the first impact that `counts`, among those at a target distance and at less and less.
+/// An impact at distance zero always counts. `cast` returns the impact at a target distance, from
+/// the impact at the last one. `distance` returns the distance of an impact.
 pub fn first_that_counts<C>(
     target_distance: f32,
     cast: impl Fn(f32, Option<&C>) -> Option<C>,
@@ -183,8 +186,9 @@ impl CastOptions {
 }
 
 impl Cast {
-    /// Returns the first impact of two triangles until `latest` that [counts](first_that_counts). Takes indices and corners as
-    /// [`FoundPair::of`] does. Triangle 2 moves by `velocity` in frame 1.
+    /// Returns the first impact of two triangles until `latest` that [counts](first_that_counts).
+    /// Takes indices and corners as [`FoundPair::of`] does. Triangle 2 moves by `velocity` in frame
+    /// 1.
     #[inline]
     pub fn of_triangles(
         placement: &Placement,
@@ -308,7 +312,8 @@ struct Sweep<'a> {
     first: Option<FirstNormal>,
 }
 
-/// A normal of an impact, as a bound of other times. Bodies are within the target distance no sooner than along the normal.
+/// A normal of an impact, as a bound of other times. Bodies are within the target distance no
+/// sooner than along the normal.
 struct FirstNormal {
     toward: Toward,
     /// Lower bound of one over the speed against the normal.

@@ -49,8 +49,8 @@ const WIDEST_MARGIN: f64 = 1.0e15;
 /// `None` if no pair meets, or if the placement is not finite.
 ///
 /// Triangles touch up to 1e-12 of their size. Faster than [`nearest`](super::nearest()) with a
-/// limit of zero, which may choose another pair. Each axis only has to tell whether nodes are apart, as in a
-/// descent, not how far. The pair of nodes that overlaps most is looked at first.
+/// limit of zero, which may choose another pair. Each axis only has to tell whether nodes are
+/// apart, as in a descent, not how far. The pair of nodes that overlaps most is looked at first.
 pub fn meeting(
     trees: (&Tree, &Tree),
     placement: Placement,

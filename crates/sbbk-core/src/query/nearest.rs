@@ -1,7 +1,8 @@
 //! The nearest or the deepest pair of triangles.
 //!
-//! Pairs of triangles of two parallel faces are equally near, and rounding in `f32` lowers their bounds. Leaves and nodes are
-//! therefore compared along the normal of the nearest pair in `f64` ([`Toward`]).
+//! Pairs of triangles of two parallel faces are equally near, and rounding in `f32` lowers their
+//! bounds. Leaves and nodes are therefore compared along the normal of the nearest pair in `f64`
+//! ([`Toward`]).
 
 use glamx::{DVec3, Vec3};
 use wide::f32x4;
@@ -51,8 +52,8 @@ pub fn deepest(
     search(trees, placement, limit, Goal::Deepest, &[], scratch).0
 }
 
-/// Searches all pairs of triangles except those in `excluded`, which is sorted. Returns the pair, and how many pairs of
-/// nodes and of triangles were compared.
+/// Searches all pairs of triangles except those in `excluded`, which is sorted. Returns the pair,
+/// and how many pairs of nodes and of triangles were compared.
 pub(super) fn search(
     trees: (&Tree, &Tree),
     placement: Placement,
@@ -180,8 +181,9 @@ impl NearestSearch<'_> {
     }
 }
 
-/// Returns a pair of leaves that is probably near the answer. Goes down both trees to the children whose centres are
-/// nearest to each other. A search prunes by the best pair of triangles so far, so an early good one is worth most.
+/// Returns a pair of leaves that is probably near the answer. Goes down both trees to the children
+/// whose centres are nearest to each other. A search prunes by the best pair of triangles so far,
+/// so an early good one is worth most.
 fn near_leaves<'a>(
     trees: (&'a Tree, &'a Tree),
     frame: &PairFrame,
@@ -246,8 +248,8 @@ mod tests {
         }
     }
 
-    /// Planes of 8192 and 32,768 triangles over each other, flat and tilted, without and with a wall beside them. Would catch
-    /// comparisons of all pairs that are equally near.
+    /// Planes of 8192 and 32,768 triangles over each other, flat and tilted, without and with a
+    /// wall beside them. Would catch comparisons of all pairs that are equally near.
     #[test]
     fn few_pairs_of_parallel_faces_are_compared() {
         // All coordinates are exact.

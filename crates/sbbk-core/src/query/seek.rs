@@ -1,8 +1,8 @@
 //! The search: depth first, the nearest pair first, with a bound.
 //!
 //! A pair of nodes is replaced by the pairs of its children whose lower bound is at most the best
-//! value so far. The pair with the least bound is next. The first leaves reached are near the answer, so the
-//! bound is tight from then on.
+//! value so far. The pair with the least bound is next. The first leaves reached are near the
+//! answer, so the bound is tight from then on.
 
 use std::ops::ControlFlow;
 
@@ -24,7 +24,8 @@ pub(super) trait Bounds: Compare<Key = f32> {
     /// Pairs with a bound above this cannot matter. [`FOUND`] ends the search.
     fn limit(&self) -> f32;
 
-    /// Returns true if a second look, which may take longer, tells that a pair of nodes cannot matter.
+    /// Returns true if a second look, which may take longer, tells that a pair of nodes cannot
+    /// matter.
     fn are_beyond(&mut self, _trees: (&Tree, &Tree), _nodes: NodePair) -> bool {
         false
     }
@@ -55,11 +56,11 @@ pub(super) fn seek<B: Bounds>(
     });
 }
 
-/// Opens pairs of nodes of any two hierarchies, depth first. The pair with the least bound is next among those that a call
-/// of `open` adds, and the last one of equal bounds.
+/// Opens pairs of nodes of any two hierarchies, depth first. The pair with the least bound is next
+/// among those that a call of `open` adds, and the last one of equal bounds.
 ///
-/// `open` gets the bound of a pair and the pair. It compares two leaves, or adds the pairs below two nodes with their
-/// bounds. The search ends when it breaks.
+/// `open` gets the bound of a pair and the pair. It compares two leaves, or adds the pairs below
+/// two nodes with their bounds. The search ends when it breaks.
 #[inline(always)]
 pub fn best_first<B: Copy + PartialOrd, P: Copy>(
     stack: &mut Vec<(B, P)>,

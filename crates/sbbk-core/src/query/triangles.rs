@@ -65,8 +65,8 @@ pub struct FoundPair {
 }
 
 impl FoundPair {
-    /// Two triangles by their indices and corners, mesh 2 placed at `placement` in the frame of mesh
-    /// 1, if they touch or are at most `margin` apart.
+    /// Two triangles by their indices and corners, mesh 2 placed at `placement` in the frame of
+    /// mesh 1, if they touch or are at most `margin` apart.
     #[inline]
     pub fn of(
         placement: &Placement,

@@ -1,12 +1,14 @@
 //! Minimum cones: the directions in which a triangle or one of its features may be a local minimum.
 //!
-//! Most directions are far from the normal of a triangle and need no look at the neighbours (Johnson and Cohen,
-//! *Spatialized Normal Cone Hierarchies*, 2001). [`spread`](super::spread) finds the cones.
+//! Most directions are far from the normal of a triangle and need no look at the neighbours
+//! (Johnson and Cohen, *Spatialized Normal Cone Hierarchies*, 2001). [`spread`](super::spread)
+//! finds the cones.
 
 /// Allowance for rounding of directions, in squares of cosines.
 const ROUNDING: f64 = 1.0e-6;
 
-/// Two cones around the line of a triangle's normal: for contacts with an edge or a vertex, and with a face.
+/// Two cones around the line of a triangle's normal: for contacts with an edge or a vertex, and
+/// with a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MinimumCones([u8; 2]);
 

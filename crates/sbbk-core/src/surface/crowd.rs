@@ -7,8 +7,8 @@ use super::slopes::{Bend, FLAT, Heights, RISE_TO_FACE, Slopes};
 /// Ways that are compared one by one. Higher: slower at fans. Lower: more memory.
 const LEAF: usize = 8;
 
-/// Ratio up to which slopes count as equal. Higher: rises are less exact. Lower: all ways are compared where these rise
-/// equally.
+/// Ratio up to which slopes count as equal. Higher: rises are less exact. Lower: all ways are
+/// compared where these rise equally.
 const EQUAL: f64 = 1.01;
 
 /// The surface at a place, for all directions.
@@ -30,8 +30,8 @@ impl Crowd {
         Self { ways, boxes, heights, bend }
     }
 
-    /// Returns the surface seen along a unit direction. A rise below [`FLAT`] is returned as [`FLAT`]. One above [`RISE_TO_FACE`]
-    /// need not be the greatest.
+    /// Returns the surface seen along a unit direction. A rise below [`FLAT`] is returned as
+    /// [`FLAT`]. One above [`RISE_TO_FACE`] need not be the greatest.
     pub(super) fn slopes(&self, direction: DVec3) -> Slopes {
         let rise = self.greatest(&self.ways, 0, direction, FLAT).powi(2);
         Slopes { rise, height: self.heights.along(direction), bend: Some(self.bend.doubled()) }
@@ -78,7 +78,8 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Adds a triangle by its area vector out of the body, and the angle that the triangle has at the place.
+    /// Adds a triangle by its area vector out of the body, and the angle that the triangle has at
+    /// the place.
     pub(super) fn add(&mut self, area: DVec3, angle: f64) {
         self.heights.add(area, angle);
         self.area += area;

@@ -11,13 +11,14 @@ use super::one_ring::Around;
 use crate::contact::Feature;
 use crate::simd::each;
 
-/// Distance from the ends of an edge at which other triangles are sought along the edge, as a share of its length. Higher: a T-junction near
-/// an end makes a border. Lower: edges of slivers go on in their neighbours.
+/// Distance from the ends of an edge at which other triangles are sought along the edge, as a share
+/// of its length. Higher: a T-junction near an end makes a border. Lower: edges of slivers go on in
+/// their neighbours.
 const OFF_ENDS: f64 = 0.1;
 
 impl<F: Facets> Around<F> {
-    /// True if a surface ends at an edge or a vertex. A triangle there has an edge without a twin, along which no other triangle
-    /// goes on.
+    /// True if a surface ends at an edge or a vertex. A triangle there has an edge without a twin,
+    /// along which no other triangle goes on.
     pub fn is_border(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {
         match feature {
             Feature::Edge(i) if self.facets.twin(3 * triangle + u32::from(i)).is_none() => {}
@@ -30,8 +31,8 @@ impl<F: Facets> Around<F> {
         Memo::answer(self.facets.memo().map(|memo| &memo.borders), (ring, key(place)), find)
     }
 
-    /// Returns true if an edge without a twin is a border at a place, or if one at a vertex is. Also returns the number of
-    /// triangles there.
+    /// Returns true if an edge without a twin is a border at a place, or if one at a vertex is.
+    /// Also returns the number of triangles there.
     fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> (bool, usize) {
         let (mut borders, mut count) = (ArrayVec::<(u32, f64), 2>::new(), 0);
         let first = half_edge(triangle, feature);
@@ -64,7 +65,8 @@ impl<F: Facets> Around<F> {
         (borders.into_iter().any(ends), count)
     }
 
-    /// Returns true if the surface ends at the highest corner of a triangle along a unit axis. `heights` has the heights of the corners.
+    /// Returns true if the surface ends at the highest corner of a triangle along a unit axis.
+    /// `heights` has the heights of the corners.
     pub fn ends_along(&self, triangle: u32, heights: [f64; 3], axis: DVec3) -> bool {
         let highest = (0..3).max_by(|&a, &b| heights[a].total_cmp(&heights[b])).unwrap_or_default();
         self.is_local_minimum(triangle, Feature::Vertex(highest as u8), axis, None)

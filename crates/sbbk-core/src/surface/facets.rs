@@ -10,7 +10,8 @@ use super::memo::PlaceMemo;
 use super::slopes::angle;
 use crate::contact::Feature;
 
-/// Triangles with their adjacency. Half-edge `3 t + i` runs from vertex `i` of triangle `t` to the next one.
+/// Triangles with their adjacency. Half-edge `3 t + i` runs from vertex `i` of triangle `t` to the
+/// next one.
 pub trait Facets {
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     fn twin(&self, half_edge: u32) -> Option<u32>;
@@ -18,20 +19,24 @@ pub trait Facets {
     /// A corner of the triangle of a half-edge, counted from the start of the half-edge.
     fn corner(&self, half_edge: u32, i: usize) -> DVec3;
 
-    /// True if the one-ring of an edge or a vertex is all of the surface there, as there are no strays.
+    /// True if the one-ring of an edge or a vertex is all of the surface there, as there are no
+    /// strays.
     fn is_whole(&self, _triangle: u32, _feature: Feature) -> bool {
         true
     }
 
-    /// Calls `visit` with all triangles near the box between two corners, to find strays. May end when it breaks.
+    /// Calls `visit` with all triangles near the box between two corners, to find strays. May end
+    /// when it breaks.
     fn near(&self, _corners: [DVec3; 2], _visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
 
-    /// Sign with which the normal of a triangle leads out of the body; 0 unless the body is on one side.
+    /// Sign with which the normal of a triangle leads out of the body; 0 unless the body is on one
+    /// side.
     fn outward(&self, _triangle: u32) -> f64 {
         1.0
     }
 
-    /// Bounds of the directions that may be local minima at a triangle. They spare the look at its neighbours.
+    /// Bounds of the directions that may be local minima at a triangle. They spare the look at its
+    /// neighbours.
     fn cones(&self, _triangle: u32) -> MinimumCones {
         MinimumCones::ALL
     }
@@ -43,7 +48,8 @@ pub trait Facets {
 }
 
 /// Visits the one-ring of an edge or a vertex, starting with `triangle`, until `visit` breaks.
-/// Returns true if the ring closes. Ends for any twins, also for those that a mesh had before an edit.
+/// Returns true if the ring closes. Ends for any twins, also for those that a mesh had before an
+/// edit.
 #[inline(always)]
 pub(super) fn visit_ring(
     facets: &impl Facets,
@@ -97,7 +103,8 @@ pub(super) fn visit_ring(
     false
 }
 
-/// Notices that a walk goes in circles, in constant memory (Brent 1980, "An improved Monte Carlo factorization algorithm").
+/// Notices that a walk goes in circles, in constant memory (Brent 1980, "An improved Monte Carlo
+/// factorization algorithm").
 struct Walk {
     /// Half-edge of an earlier step.
     mark: u32,
@@ -186,7 +193,8 @@ mod tests {
     }
 
     proptest! {
-        /// Would catch a walk that enters a circle without its start, as after an edit that a host did not tell.
+        /// Would catch a walk that enters a circle without its start, as after an edit that a host
+        /// did not tell.
         #[test]
         fn walks_end_for_any_twins(numbers in vec(any::<u32>(), 3..300)) {
             let count = numbers.len() as u32 / 3 * 3;

@@ -13,8 +13,8 @@ pub enum SurfaceKind {
     Solid,
     /// A body with inward normals.
     InsideOut,
-    /// An open surface, a triangle soup, or triangles that disagree about the outside. It collides on
-    /// both sides.
+    /// An open surface, a triangle soup, or triangles that disagree about the outside. It collides
+    /// on both sides.
     Sheet,
 }
 
@@ -22,8 +22,8 @@ pub enum SurfaceKind {
 /// of it. Lower: a head with a hole is a sheet.
 const HOLES: f64 = 0.06;
 
-/// Numbers of triangles that are tested for [`HOLES`]: the next one if one leaves doubt. The first is
-/// enough for terrains. Higher: slower. Lower: chance decides about more meshes.
+/// Numbers of triangles that are tested for [`HOLES`]: the next one if one leaves doubt. The first
+/// is enough for terrains. Higher: slower. Lower: chance decides about more meshes.
 const SAMPLES: [u32; 3] = [16, 256, 2048];
 
 /// Standard deviations from [`HOLES`] that leave no doubt.
@@ -32,8 +32,8 @@ const SURE: f64 = 3.0;
 /// Number of triangles that decide which way the normals of a closed surface point.
 const VOTES: u32 = 16;
 
-/// Triangles that are considered for samples, evenly spread over the mesh. Higher: a large mesh takes
-/// longer. Lower: single large triangles among many are missed.
+/// Triangles that are considered for samples, evenly spread over the mesh. Higher: a large mesh
+/// takes longer. Lower: single large triangles among many are missed.
 const CONSIDERED: u32 = 1 << 14;
 
 /// Classifies a mesh by up to 4096 rays, and more at walls.
@@ -42,8 +42,8 @@ pub fn kind(triangles: &impl RayTriangles) -> SurfaceKind {
     of_samples(&RayMesh::new(triangles, None, memo, WallLimit::MESH))
 }
 
-/// Returns true if a mesh is a sheet, by a few rays that meet nothing at all. Such a mesh needs no [`Surface`](super::Surface) to tell. The mesh must
-/// have a border.
+/// Returns true if a mesh is a sheet, by a few rays that meet nothing at all. Such a mesh needs no
+/// [`Surface`](super::Surface) to tell. The mesh must have a border.
 pub fn is_surely_open(triangles: &impl RayTriangles) -> bool {
     let memo = &PlaceMemo::default();
     let (mesh, samples) =

@@ -19,8 +19,8 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: Eq + Hash, V: Clone> Memo<K, V> {
-    /// Returns the known answer of a key, or calls `find`. Keeps answers that took more than [`LONG`]
-    /// triangles.
+    /// Returns the known answer of a key, or calls `find`. Keeps answers that took more than
+    /// [`LONG`] triangles.
     pub(super) fn answer(memo: Option<&Self>, key: K, find: impl FnOnce() -> (V, usize)) -> V {
         let known = memo.and_then(|memo| memo.get(&key));
         known.unwrap_or_else(|| {
@@ -39,8 +39,8 @@ impl<K: Eq + Hash, V: Clone> Memo<K, V> {
     }
 }
 
-/// Crowds and borders, by one-ring and place. All contacts there ask for the same. Also walls within bodies, by triangle:
-/// many rays meet the same walls. For one query.
+/// Crowds and borders, by one-ring and place. All contacts there ask for the same. Also walls
+/// within bodies, by triangle: many rays meet the same walls. For one query.
 #[derive(Default)]
 pub struct PlaceMemo {
     /// The least half-edge of a long one-ring, by half-edge.

@@ -1,8 +1,8 @@
 //! Adjacency of the triangles of a mesh, and the kind of surface that they form.
 //!
-//! A triangle alone cannot tell on which side the body is. It cannot tell either if a point on its border is a
-//! corner of the body, or lies within a flat face. A [`Surface`] stores the neighbours across each edge, of
-//! welded vertices, and derives from rays if the triangles bound a solid.
+//! A triangle alone cannot tell on which side the body is. It cannot tell either if a point on its
+//! border is a corner of the body, or lies within a flat face. A [`Surface`] stores the neighbours
+//! across each edge, of welded vertices, and derives from rays if the triangles bound a solid.
 
 mod cones;
 mod crowd;
@@ -34,12 +34,13 @@ use glamx::Vec3;
 
 use twins::Adjacency;
 
-/// Greatest number of triangles of a mesh whose kind follows from its edges if these are all paired. Rays also take its closed
-/// components as they are. Larger meshes take rays that need no paired edges.
+/// Greatest number of triangles of a mesh whose kind follows from its edges if these are all
+/// paired. Rays also take its closed components as they are. Larger meshes take rays that need no
+/// paired edges.
 pub const PAIRED: usize = 1 << 17;
 
-/// Greatest number of triangles of a small component. Higher: searches for components take longer. Lower:
-/// each triangle of a larger component takes two rays.
+/// Greatest number of triangles of a small component. Higher: searches for components take longer.
+/// Lower: each triangle of a larger component takes two rays.
 pub const SMALL_COMPONENT: usize = 32;
 
 /// The adjacency of the triangles of a mesh, and the kind of surface.
@@ -66,8 +67,9 @@ impl Surface {
         Self { adjacency, kind }
     }
 
-    /// True if other triangles have the contacts of a triangle. An earlier one may have the same corners, in either winding. A
-    /// triangle without an area leaves its contacts to those at its sides. A point has none.
+    /// True if other triangles have the contacts of a triangle. An earlier one may have the same
+    /// corners, in either winding. A triangle without an area leaves its contacts to those at its
+    /// sides. A point has none.
     #[inline]
     pub fn is_double(&self, triangle: u32) -> bool {
         self.adjacency.doubles.contains(triangle)
@@ -84,8 +86,9 @@ impl Surface {
         self.adjacency.twins.get(half_edge)
     }
 
-    /// The first triangle at a hub, a vertex of more than a thousand. Takes the corners of a triangle
-    /// there. Boxes at a hub overlap, so rays from each triangle would take quadratic time.
+    /// The first triangle at a hub, a vertex of more than a thousand. Takes the corners of a
+    /// triangle there. Boxes at a hub overlap, so rays from each triangle would take quadratic
+    /// time.
     pub fn first_at_hub(&self, corners: [Vec3; 3]) -> Option<u32> {
         let hubs = &self.adjacency.hubs;
         if hubs.is_empty() {

@@ -17,8 +17,8 @@ use crate::contact::Feature;
 use crate::contact::convex::{PointSupport, convex_contact};
 use crate::simd::each;
 
-/// The surface around a triangle, which tests directions against the one-ring of a vertex or an edge, or
-/// against a face.
+/// The surface around a triangle, which tests directions against the one-ring of a vertex or an
+/// edge, or against a face.
 #[derive(Clone, Copy)]
 pub struct Around<F> {
     /// The triangles of the surface.
@@ -27,22 +27,23 @@ pub struct Around<F> {
     pub side: Side,
 }
 
-/// Triangles near the point of an impact that are looked at. Higher: slow casts at the hub of a fan. Lower: casts
-/// along walls stop where many triangles meet.
+/// Triangles near the point of an impact that are looked at. Higher: slow casts at the hub of a
+/// fan. Lower: casts along walls stop where many triangles meet.
 const MOST_NEAR: usize = 64;
 
-/// Share of the coordinates that rounding to f32 may open between triangles that touch. Higher: triangles across a gap count as
-/// touching. Lower: casts stop at T-junctions of a wall that they slide along.
+/// Share of the coordinates that rounding to f32 may open between triangles that touch. Higher:
+/// triangles across a gap count as touching. Lower: casts stop at T-junctions of a wall that they
+/// slide along.
 const ROUNDING: f64 = 1.0e-6;
 
 impl<F: Facets> Around<F> {
-    /// True if no triangle of the one-ring of a feature comes nearer to the other body in a unit
-    /// direction, and the direction does not lead into the solid.
+    /// True if no triangle of a feature's one-ring comes nearer to the other body in a unit
+    /// direction. The direction must not lead into the solid.
     ///
-    /// The direction leads from a point of the feature to the nearest point of the other body. From a
-    /// face it is the normal; from an edge or a vertex it is within the Voronoi region. `contact` has that
-    /// point and the feature of the other body, if known. A neighbour may come slightly nearer where
-    /// the surface bends; within a flat side, edges and vertices are no local minima.
+    /// The direction leads from a point of the feature to the nearest point of the other body. From
+    /// a face it is the normal; from an edge or a vertex it is within the Voronoi region. `contact`
+    /// has that point and the feature of the other body, if known. A neighbour may come slightly
+    /// nearer where the surface bends; within a flat side, edges and vertices are no local minima.
     pub fn is_local_minimum(
         &self,
         triangle: u32,
@@ -77,8 +78,9 @@ impl<F: Facets> Around<F> {
                 || !self.is_exceeded(triangle, feature, slopes, most, place))
     }
 
-    /// Returns the rise of a one-ring towards a direction, its bend from a plane, and the signs of its heights. The walk ends
-    /// at a rise above `most`. After [`LONG`] triangles there is no bend.
+    /// Returns the rise of a one-ring towards a direction, its bend from a plane, and the signs of
+    /// its heights. The walk ends at a rise above `most`. After [`LONG`] triangles there is no
+    /// bend.
     #[inline(always)]
     fn first_slopes(
         &self,
@@ -106,9 +108,10 @@ impl<F: Facets> Around<F> {
         (slopes.rise, (count <= LONG).then_some(bend), signs)
     }
 
-    /// Returns true if a triangle that touches a place on a triangle rises towards a point, by a slope whose
-    /// sine is above `most`. A triangle across a gap rises if it is nearer to the point than the place is. The direction and
-    /// the distance lead from the place to the point. Looks at few triangles where many meet.
+    /// Returns true if a triangle that touches a place on a triangle rises towards a point, by a
+    /// slope whose sine is above `most`. A triangle across a gap rises if it is nearer to the point
+    /// than the place is. The direction and the distance lead from the place to the point. Looks at
+    /// few triangles where many meet.
     pub fn rises(
         &self,
         triangle: u32,
@@ -182,8 +185,9 @@ impl<F: Facets> Around<F> {
         self.leads_in(triangle, feature, direction, &signs)
     }
 
-    /// True if a unit direction that leads into the solid leads behind all triangles of a closed, short one-ring. The way
-    /// then begins in the solid: directions outside of it lead in front of one.
+    /// True if a unit direction that leads into the solid leads behind all triangles of a closed,
+    /// short one-ring. The way then begins in the solid: directions outside of it lead in front of
+    /// one.
     pub fn leads_behind_all(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
         let mut count = 0;
         let is_behind = |wedge: Wedge| {
@@ -196,17 +200,20 @@ impl<F: Facets> Around<F> {
             || self.facets.is_whole(triangle, feature) && self.visit(triangle, feature, is_behind)
     }
 
-    /// Returns the sign with which the normal of a triangle leads out of the solid: 0 for walls within, 1 for sheets.
+    /// Returns the sign with which the normal of a triangle leads out of the solid: 0 for walls
+    /// within, 1 for sheets.
     fn outward_of(&self, triangle: u32) -> f64 {
         if self.is_solid() { self.facets.outward(triangle) } else { 1.0 }
     }
 
-    /// Returns the height of slopes out of the solid. A body that is in a room has the solid on the other side.
+    /// Returns the height of slopes out of the solid. A body that is in a room has the solid on the
+    /// other side.
     fn height_out(&self, triangle: u32, slopes: &Slopes) -> f64 {
         self.outward() * self.facets.outward(triangle) * slopes.height
     }
 
-    /// Returns true if a direction leads into the solid, by its heights over the triangles of a one-ring.
+    /// Returns true if a direction leads into the solid, by its heights over the triangles of a
+    /// one-ring.
     fn leads_in(&self, triangle: u32, feature: Feature, direction: DVec3, signs: &Signs) -> bool {
         signs.lead_in().unwrap_or_else(|| {
             let mut heights = Heights::default();
@@ -218,8 +225,8 @@ impl<F: Facets> Around<F> {
         })
     }
 
-    /// Returns the first triangle of a vertex's one-ring, and a number of the ring. Sums in the order of a ring that
-    /// starts there have the same bits for all triangles of the ring.
+    /// Returns the first triangle of a vertex's one-ring, and a number of the ring. Sums in the
+    /// order of a ring that starts there have the same bits for all triangles of the ring.
     pub(super) fn first_of_ring(&self, triangle: u32, feature: Feature) -> (u32, Feature, u32) {
         if !matches!(feature, Feature::Vertex(_)) {
             return (triangle, feature, PlaceMemo::SHORT);
@@ -358,8 +365,9 @@ impl<F: Facets> Around<F> {
         }
     }
 
-    /// Calls `visit` for each triangle that touches a place. `visit` also gets the three corners, seen from the place, and
-    /// the corners that are not at the place. Ends after `most` triangles near the place, or if `visit` breaks.
+    /// Calls `visit` for each triangle that touches a place. `visit` also gets the three corners,
+    /// seen from the place, and the corners that are not at the place. Ends after `most` triangles
+    /// near the place, or if `visit` breaks.
     pub(super) fn visit_touching(
         &self,
         triangle: u32,
@@ -394,8 +402,8 @@ impl<F: Facets> Around<F> {
         area_vector(&each(|i| self.corner(3 * triangle, i)))
     }
 
-    /// The triangles of the one-ring of a vertex or an edge, by the half-edges that start there, and true
-    /// if the ring closes.
+    /// The triangles of the one-ring of a vertex or an edge, by the half-edges that start there,
+    /// and true if the ring closes.
     pub fn ring(&self, triangle: u32, feature: Feature) -> (Vec<u32>, bool) {
         let mut ring = Vec::new();
         let is_closed = self.visit(triangle, feature, |Wedge { half_edge, .. }| {

@@ -19,15 +19,16 @@ pub trait RayTriangles {
     /// The least and the greatest coordinates.
     fn bounds(&self) -> [DVec3; 2];
 
-    /// Calls `visit` with all triangles that may come within `slack` of a triangle, until it breaks.
+    /// Calls `visit` with all triangles that may come within `slack` of a triangle, until it
+    /// breaks.
     fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
 
     /// Calls `visit` with all triangles that the ray from `start` may meet, until it breaks.
     fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
 }
 
-/// Triangles that a ray meets at most. A triangle whose rays meet more counts as a face. Higher: meshes
-/// of many layers take longer. Lower: walls within such meshes have contacts.
+/// Triangles that a ray meets at most. A triangle whose rays meet more counts as a face. Higher:
+/// meshes of many layers take longer. Lower: walls within such meshes have contacts.
 pub(super) const MOST_HITS: usize = 100;
 
 /// Share of a length below which two places of a ray are one.
@@ -70,7 +71,8 @@ pub(super) struct Hit {
     /// 1 if the ray leaves through the front, -1 if it enters.
     pub(super) sign: i8,
     pub(super) triangle: u32,
-    /// True within a triangle of a closed component. Rays count all such hits, also where faces are flush.
+    /// True within a triangle of a closed component. Rays count all such hits, also where faces are
+    /// flush.
     pub(super) is_exact: bool,
 }
 
@@ -83,8 +85,8 @@ pub(super) fn winding<'a>(hits: impl Iterator<Item = &'a Hit>) -> i32 {
     crossings(hits).map(|(_, sign)| sign).sum()
 }
 
-/// Returns the length and the sign of each hit, the nearest first. Triangles at one place count once unless the hits are exact:
-/// doubles, and the two at an edge. Others have sign 0.
+/// Returns the length and the sign of each hit, the nearest first. Triangles at one place count
+/// once unless the hits are exact: doubles, and the two at an edge. Others have sign 0.
 fn crossings(hits: impl Iterator<Item = (f64, i8, bool)>) -> impl Iterator<Item = (f64, i32)> {
     let mut last = [(f64::NEG_INFINITY, false); 2];
     hits.map(move |(length, sign, is_exact)| {
@@ -94,8 +96,9 @@ fn crossings(hits: impl Iterator<Item = (f64, i8, bool)>) -> impl Iterator<Item 
     })
 }
 
-/// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front. Also true if it meets the border, or
-/// if rounding decides on which side the origin is. The length may be negative there.
+/// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front.
+/// Also true if it meets the border, or if rounding decides on which side the origin is. The length
+/// may be negative there.
 pub(super) fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i8, bool)> {
     let normal = area_vector(corners);
     let along = normal.dot(direction);
@@ -110,13 +113,14 @@ pub(super) fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<
     (is_met && along != 0.0).then_some((length, along.signum() as i8, is_at_border))
 }
 
-/// Triangles near a ray up to which [`ends_within`] tests them. Higher: slow where many triangles are at one place. Lower: more
-/// rays that test winding numbers.
+/// Triangles near a ray up to which [`ends_within`] tests them. Higher: slow where many triangles
+/// are at one place. Lower: more rays that test winding numbers.
 const MOST_NEAR: usize = 64;
 
-/// Returns true if a solid ends within a length along a ray that starts in it. `near` has the corners of all triangles that
-/// the ray may meet, seen from its start. `outward` is the sign with which normals lead out of the solid. A solid goes on
-/// where one of its parts ends and another begins. Returns false if too many triangles are near.
+/// Returns true if a solid ends within a length along a ray that starts in it. `near` has the
+/// corners of all triangles that the ray may meet, seen from its start. `outward` is the sign with
+/// which normals lead out of the solid. A solid goes on where one of its parts ends and another
+/// begins. Returns false if too many triangles are near.
 pub fn ends_within(
     near: impl Iterator<Item = [DVec3; 3]>,
     direction: DVec3,

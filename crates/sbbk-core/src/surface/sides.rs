@@ -1,8 +1,8 @@
 //! Sides of triangles: the body or nothing, by winding numbers that rays count.
 //!
-//! A ray from a point inside a closed surface leaves the surface once more than it enters. This holds
-//! for triangle soups, T-junctions, doubled triangles and parts that overlap, and needs no adjacency.
-//! Rays of one point disagree only as far as the surface is open.
+//! A ray from a point inside a closed surface leaves the surface once more than it enters. This
+//! holds for triangle soups, T-junctions, doubled triangles and parts that overlap, and needs no
+//! adjacency. Rays of one point disagree only as far as the surface is open.
 //!
 //! Source: Jacobson, Kavan, Sorkine-Hornung, *Robust Inside-Outside Segmentation using Generalized
 //! Winding Numbers*, 2013. Their number is the mean over all rays.
@@ -32,7 +32,8 @@ pub enum Side {
 }
 
 impl Side {
-    /// Sign with which the normal of the triangle leads out of the body; `None` unless the body is on one side.
+    /// Sign with which the normal of the triangle leads out of the body; `None` unless the body is
+    /// on one side.
     #[inline]
     pub fn outward(self) -> Option<f64> {
         match self {
@@ -43,8 +44,8 @@ impl Side {
     }
 }
 
-/// Distance from a triangle at which rays start, as a share of its longest side. Higher: thin plates
-/// are sheets. Lower: rounding decides about walls that touch.
+/// Distance from a triangle at which rays start, as a share of its longest side. Higher: thin
+/// plates are sheets. Lower: rounding decides about walls that touch.
 const OFFSET: f64 = 1.0e-4;
 
 /// A choice of the rays of a triangle.
@@ -56,39 +57,40 @@ struct Choice {
     of: u32,
 }
 
-/// Higher sine: rays differ less. Lower: these graze walls. More lines: slower choice. Fewer: rays run along wide levels, and
-/// meet all that stands there.
+/// Higher sine: rays differ less. Lower: these graze walls. More lines: slower choice. Fewer: rays
+/// run along wide levels, and meet all that stands there.
 const STEEP: Choice = Choice { steep: 0.5, of: 8 };
 
-/// [`STEEP`] of samples of a mesh. Higher sine: fewer rays leave through holes near the triangle. Lower: rounding decides
-/// where rays start.
+/// [`STEEP`] of samples of a mesh. Higher sine: fewer rays leave through holes near the triangle.
+/// Lower: rounding decides where rays start.
 const ANY: Choice = Choice { steep: 0.02, of: 1 };
 
-/// Distance of tested points from a triangle that meets another, as a share of the longest side. Higher: narrow parts outside
-/// have no contacts. Lower: rays start on that triangle.
+/// Distance of tested points from a triangle that meets another, as a share of the longest side.
+/// Higher: narrow parts outside have no contacts. Lower: rays start on that triangle.
 const BESIDE: f64 = 10.0 * OFFSET;
 
-/// Distance of tested points from a corner, as a share of its distance from the middle. Higher: more searches for triangles
-/// that meet. Lower: rays start on walls that meet at the corner.
+/// Distance of tested points from a corner, as a share of its distance from the middle. Higher:
+/// more searches for triangles that meet. Lower: rays start on walls that meet at the corner.
 const AT_CORNER: f64 = 0.05;
 
-/// Places of tested points along the segment in which two triangles meet. More: slower. Fewer: corners outside are missed.
+/// Places of tested points along the segment in which two triangles meet. More: slower. Fewer:
+/// corners outside are missed.
 const ALONG: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// Triangles that meet another and are tested at most. A triangle that meets more is a face. Higher: slower. Lower: walls that
-/// others meet have contacts.
+/// Triangles that meet another and are tested at most. A triangle that meets more is a face.
+/// Higher: slower. Lower: walls that others meet have contacts.
 const MOST_MEETINGS: usize = 64;
 
-/// Offset in the sequence of ray directions between successive triangles. Fewer: rays of neighbours are
-/// alike.
+/// Offset in the sequence of ray directions between successive triangles. Fewer: rays of neighbours
+/// are alike.
 const SHIFT: u32 = 17;
 
-/// Number of triangles after which rays repeat. It is prime, so that no row of a regular mesh has the same
-/// rays as the next.
+/// Number of triangles after which rays repeat. It is prime, so that no row of a regular mesh has
+/// the same rays as the next.
 const SHIFTS: u32 = 1009;
 
-/// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more. Takes less time with a
-/// `surface`, as rays count closed components as they are.
+/// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else
+/// more. Takes less time with a `surface`, as rays count closed components as they are.
 pub fn side(
     triangles: &impl RayTriangles,
     surface: Option<&Surface>,
@@ -98,9 +100,9 @@ pub fn side(
     RayMesh::with(triangles, surface, memo).side(triangle)
 }
 
-/// Returns the sign of the winding number of a closed mesh around a point, by two rays. It is 1 within the body, -1 within faces
-/// that lead inwards, and 0 elsewhere. `None` if the rays disagree, as they may where the point is on the surface. Takes less
-/// time with a `surface`.
+/// Returns the sign of the winding number of a closed mesh around a point, by two rays. It is 1
+/// within the body, -1 within faces that lead inwards, and 0 elsewhere. `None` if the rays
+/// disagree, as they may where the point is on the surface. Takes less time with a `surface`.
 pub fn winding_sign(
     triangles: &impl RayTriangles,
     surface: Option<&Surface>,
@@ -113,10 +115,11 @@ pub fn winding_sign(
 /// Limit of the tests for walls. Walls count as faces beyond this limit.
 #[derive(Clone, Copy)]
 pub(super) struct WallLimit {
-    /// Triangles that the rays of these tests may come near. Higher: meshes of open parts in each other are slower. Lower:
-    /// walls within such meshes have contacts.
+    /// Number of triangles near the rays of these tests, at most. Higher: meshes of open parts in
+    /// each other are slower. Lower: walls within such meshes have contacts.
     work: i64,
-    /// True if others use the memo of walls. Known walls then count as new ones, so a side does not depend on these others.
+    /// True if others use the memo of walls. Known walls then count as new ones, so a side does not
+    /// depend on these others.
     is_shared: bool,
 }
 
@@ -180,7 +183,8 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         let second = if is_sure { first } else { sample(1) };
         let is_doubted = second != first && second == sample(2);
         let side = if is_doubted { second } else { first };
-        // A point is outside only if two pairs of rays say so: single rays pass where boxes are flush.
+        // A point is outside only if two pairs of rays say so: single rays pass where boxes are
+        // flush.
         let is_inner_at = |start| {
             let mut rays = (0..2).filter_map(|i| Rays::new(self, triangle, start, i, STEEP));
             rays.any(|rays| rays.side_without_walls() == Side::Inner)
@@ -189,8 +193,8 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         if is_face { Side::Outer } else { side }
     }
 
-    /// Returns the sign of the winding number around a point, if two rays agree. Many layers count as a body. A ray that only
-    /// meets closed components, within triangles, cannot be wrong.
+    /// Returns the sign of the winding number around a point, if two rays agree. Many layers count
+    /// as a body. A ray that only meets closed components, within triangles, cannot be wrong.
     pub(super) fn winding_sign(&self, point: DVec3) -> Option<i32> {
         let rays = Rays::from_point(self, point)?;
         let sign = |i| rays.winding(i, |other| self.counts(other)).map_or(1, i32::signum);
@@ -198,8 +202,9 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         (rays.is_exact.get() || one == sign(1)).then_some(one)
     }
 
-    /// Sends a ray to the front of a triangle and another to the back, and tells the side between them. A ray from a face to the
-    /// back may leave through a triangle that is wound the other way. Also returns true if the rays cannot be wrong.
+    /// Sends a ray to the front of a triangle and another to the back, and tells the side between
+    /// them. A ray from a face to the back may leave through a triangle that is wound the other
+    /// way. Also returns true if the rays cannot be wrong.
     fn sample(&self, triangle: u32, i: u32) -> (Side, bool) {
         let rays = Rays::from_middle(self, triangle, i, STEEP);
         let Some(rays) = rays else { return (Side::Sheet, false) };
@@ -211,8 +216,8 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         (side, rays.is_exact.get())
     }
 
-    /// Like [`sample`](Self::sample), with rays of any slope. A place within the body is no hole, so the rays need not leave
-    /// out walls there.
+    /// Like [`sample`](Self::sample), with rays of any slope. A place within the body is no hole,
+    /// so the rays need not leave out walls there.
     pub(super) fn sample_of_mesh(&self, triangle: u32, i: u32) -> Side {
         let Some(rays) = Rays::from_middle(self, triangle, i, ANY) else { return Side::Sheet };
         match rays.side(|_| true) {
@@ -226,7 +231,8 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         Rays::from_middle(self, triangle, i, ANY).is_some_and(|rays| rays.meet_nothing())
     }
 
-    /// Returns true if rays count a triangle: it is of a closed component, or no wall within the body.
+    /// Returns true if rays count a triangle: it is of a closed component, or no wall within the
+    /// body.
     fn counts(&self, triangle: u32) -> bool {
         let is_wall = || {
             let is_inner_at = |start| {
@@ -247,7 +253,8 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         !is_wall
     }
 
-    /// True if the winding number behind each triangle is one more than in front. False for two closed layers at one place.
+    /// True if the winding number behind each triangle is one more than in front. False for two
+    /// closed layers at one place.
     fn are_steps_of_one(&self) -> bool {
         self.components.is_some_and(|known| known.is_manifold)
     }
@@ -262,11 +269,11 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         self.components.is_some_and(|known| !known.open.contains(triangle))
     }
 
-    /// Returns true if part of a triangle may be outside of the body, though its middle is within. `is_inner_at` tells
-    /// whether a point is within.
+    /// Returns true if part of a triangle may be outside of the body, though its middle is within.
+    /// `is_inner_at` tells whether a point is within.
     ///
-    /// Tests points near the corners, and on both sides of each triangle that meets this one. The border of the outer part
-    /// runs along such triangles.
+    /// Tests points near the corners, and on both sides of each triangle that meets this one. The
+    /// border of the outer part runs along such triangles.
     fn is_partly_outside(&self, triangle: u32, is_inner_at: impl Fn(DVec3) -> bool) -> bool {
         let corners = self.triangles.corners(triangle);
         let Some(normal) = area_vector(&corners).try_normalize() else { return false };
@@ -367,7 +374,8 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         })
     }
 
-    /// Returns the side that the rays find. Walls within the body count as nothing, unless the rays find a face with them.
+    /// Returns the side that the rays find. Walls within the body count as nothing, unless the rays
+    /// find a face with them.
     fn side_without_walls(&self) -> Side {
         let found = self.side(|_| true);
         if found == Side::Outer { found } else { self.side(|other| self.mesh.counts(other)) }
@@ -408,12 +416,14 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         self.winding(0, counts).is_some_and(|front| front >= 1)
     }
 
-    /// The winding number that the ray to the front (0) or to the back (1) finds; `None` for too many hits.
+    /// The winding number that the ray to the front (0) or to the back (1) finds; `None` for too
+    /// many hits.
     fn winding(&self, i: usize, counts: impl Fn(u32) -> bool) -> Option<i32> {
         Some(winding(self.all_hits(i)?.iter().filter(|hit| counts(hit.triangle))))
     }
 
-    /// Returns the hits of the ray to the front (0) or to the back (1); `None` if there are too many.
+    /// Returns the hits of the ray to the front (0) or to the back (1); `None` if there are too
+    /// many.
     fn all_hits(&self, i: usize) -> Option<&Hits> {
         let direction = [self.to_front, -self.to_front][i];
         self.hits[i].get_or_init(|| self.hits(direction)).as_ref()

@@ -2,13 +2,14 @@
 
 use glamx::DVec3;
 
-/// Rise of a neighbour in bends of the surface, as it bends on both sides of a triangle. Higher: blunt
-/// edges stop bodies. Lower: a polyhedron that rolls meets the next vertex late and is braked.
+/// Rise of a neighbour in bends of the surface, as it bends on both sides of a triangle. Higher:
+/// blunt edges stop bodies. Lower: a polyhedron that rolls meets the next vertex late and is
+/// braked.
 pub(super) const BENDS: f64 = 2.0;
 
-/// Sine of the angle by which a neighbour may rise towards a direction and still count as no nearer,
-/// where the surface bends as much. Higher: bodies catch on edges between facets. Lower: faces that
-/// lie on each other, not quite flat, lose contacts.
+/// Sine of the angle by which a neighbour may rise towards a direction and still count as no
+/// nearer, where the surface bends as much. Higher: bodies catch on edges between facets. Lower:
+/// faces that lie on each other, not quite flat, lose contacts.
 pub(super) const RISE: f64 = 0.05;
 
 /// [`RISE`] if the other feature is a face. Higher: blunt edges stop bodies that slide over
@@ -19,7 +20,8 @@ pub(super) const RISE_TO_FACE: f64 = 0.3;
 /// Higher: a nut locks on its bolt. Lower: flat sides end at rounding.
 pub(super) const FLAT: f64 = 1.0e-3;
 
-/// Triangles at a place beyond which they are a crowd. Higher: fans take longer. Lower: ordinary vertices do.
+/// Triangles at a place beyond which they are a crowd. Higher: fans take longer. Lower: ordinary
+/// vertices do.
 pub(super) const LONG: usize = 32;
 
 /// The surface around a point, seen along a direction.
@@ -78,10 +80,12 @@ impl Bend {
     }
 }
 
-/// Height of a direction along the pseudo-normal of a point: the sum of the normals there, weighted by angles. The height is
-/// negative if the direction leads to a point in the solid to which the place is nearest. Areas as weights would fail at acute corners.
+/// Height of a direction along the pseudo-normal of a point: the sum of the normals there, weighted
+/// by angles. The height is negative if the direction leads to a point in the solid to which the
+/// place is nearest. Areas as weights would fail at acute corners.
 ///
-/// Source: Bærentzen and Aanæs, *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005.
+/// Source: Bærentzen and Aanæs, *Signed Distance Computation Using the Angle Weighted
+/// Pseudonormal*, 2005.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Heights {
     normal: DVec3,

@@ -11,16 +11,17 @@ use super::triangle::{area_vector, longest_side};
 use crate::contact::Feature;
 use crate::simd::each;
 
-/// Least height of a triangle that has cones, in its longest side. Higher: fewer triangles have cones. Lower:
-/// all corners of a sliver may be equally far in a direction beside its normal.
+/// Least height of a triangle that has cones, in its longest side. Higher: fewer triangles have
+/// cones. Lower: all corners of a sliver may be equally far in a direction beside its normal.
 const SLIVER: f64 = 0.01;
 
 /// Finds the cones of a triangle. Takes about a microsecond.
 ///
-/// A direction at an angle `t` to the normal leads up along one of the edges of a closed one-ring. Let `b` be the greatest
-/// sine by which an edge leaves the plane of the triangle. Let `a` be the cosine that belongs to `b`, times the cosine of
-/// half the widest angle between edges in the plane. The edge rises by `a sin t - b cos t` at least. This is at
-/// most the allowed sine `s` where `t <= atan(b / a) + asin(s / sqrt(a² + b²))`.
+/// A direction at an angle `t` to the normal leads up along one of the edges of a closed one-ring.
+/// Let `b` be the greatest sine by which an edge leaves the plane of the triangle. Let `a` be the
+/// cosine that belongs to `b`, times the cosine of half the widest angle between edges in the
+/// plane. The edge rises by `a sin t - b cos t` at least. This is at most the allowed sine `s`
+/// where `t <= atan(b / a) + asin(s / sqrt(a² + b²))`.
 pub fn minimum_cones(facets: &impl Facets, triangle: u32) -> MinimumCones {
     let corners = each(|i| facets.corner(3 * triangle, i));
     let area = area_vector(&corners);
@@ -65,7 +66,8 @@ impl Spread {
         (is_closed && is_fine).then_some(spread)
     }
 
-    /// Takes note of two edges. Returns true if the second one is less than half a turn beyond the first.
+    /// Takes note of two edges. Returns true if the second one is less than half a turn beyond the
+    /// first.
     fn add(&mut self, u: DVec3, v: DVec3) -> bool {
         let [up, next_up] = [u, v].map(|edge| edge.dot(self.normal));
         let (along, turn) = (u.dot(v) - up * next_up, self.normal.dot(u.cross(v)));
@@ -74,7 +76,8 @@ impl Spread {
         turn > 0.0
     }
 
-    /// Returns the square of the least cosine of a direction along which no edge rises by more than `most`.
+    /// Returns the square of the least cosine of a direction along which no edge rises by more than
+    /// `most`.
     fn least_square(&self, most: f64) -> f64 {
         let bend = self.bend;
         let most = most.min((BENDS * bend).max(FLAT));

@@ -1,8 +1,8 @@
 //! Strays: triangles that touch an edge or a vertex, though no common edge leads to them.
 //!
 //! Real meshes have T-junctions, doubled triangles, touching parts, and several vertices at one
-//! place. There a one-ring by common edges is not the whole surface around a point.
-//! Strays are found by distance, and a contact at an internal edge is a ghost whichever way the mesh
+//! place. There a one-ring by common edges is not the whole surface around a point. Strays are
+//! found by distance, and a contact at an internal edge is a ghost whichever way the mesh
 //! continues.
 
 use std::ops::ControlFlow;
@@ -13,12 +13,12 @@ pub use super::triangle::{seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
 
-/// Number of other triangles near a closed one-ring beyond which they do not matter. Higher: dense meshes take
-/// longer. Lower: bodies stumble where many parts touch.
+/// Number of other triangles near a closed one-ring beyond which they do not matter. Higher: dense
+/// meshes take longer. Lower: bodies stumble where many parts touch.
 const MANY: usize = 64;
 
-/// True if an edge or a vertex of a triangle has strays. So has each edge without a twin: what goes on
-/// there is not known. With more than 64 others near, a closed one-ring counts as whole.
+/// True if an edge or a vertex of a triangle has strays. So has each edge without a twin: what goes
+/// on there is not known. With more than 64 others near, a closed one-ring counts as whole.
 pub fn has_strays<F: Facets>(surface: &Around<F>, triangle: u32, feature: Feature) -> bool {
     let corners = each(|i| surface.facets.corner(3 * triangle, i));
     let (mut ring, is_closed) = surface.ring(triangle, feature);

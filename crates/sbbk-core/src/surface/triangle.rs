@@ -15,13 +15,13 @@ pub fn longest_side([a, b, c]: &[DVec3; 3]) -> f64 {
     a.distance(*b).max(b.distance(*c)).max(c.distance(*a))
 }
 
-/// Greatest distances of the strays of a needle and of a large triangle, as shares of the longest side.
-/// Higher: walls that stand close to each other count as one surface. Lower: gaps of a modeller count
-/// as holes.
+/// Greatest distances of the strays of a needle and of a large triangle, as shares of the longest
+/// side. Higher: walls that stand close to each other count as one surface. Lower: gaps of a
+/// modeller count as holes.
 const SEAM: [f64; 2] = [1.0e-5, 1.0e-3];
 
-/// Returns the greatest distance of the strays of a triangle. This is half the least height, because slivers would
-/// have many strays, but between 0.00001 and 0.001 of the longest side.
+/// Returns the greatest distance of the strays of a triangle. This is half the least height,
+/// because slivers would have many strays, but between 0.00001 and 0.001 of the longest side.
 pub fn seam(corners: &[DVec3; 3]) -> f64 {
     let longest = longest_side(corners);
     let height = area_vector(corners).length() / longest;
@@ -69,9 +69,9 @@ pub(super) fn clip(
     (first <= last).then(|| [first, last].map(|share| start.lerp(end, share)))
 }
 
-/// Returns the segment in which another triangle meets a triangle, and the unit vector across it in the plane of the
-/// triangle. Corners within `slack` of the plane lie in it. `None` if the two share no more than a point, a border of the
-/// triangle, or an area.
+/// Returns the segment in which another triangle meets a triangle, and the unit vector across it in
+/// the plane of the triangle. Corners within `slack` of the plane lie in it. `None` if the two
+/// share no more than a point, a border of the triangle, or an area.
 pub(super) fn meeting(
     triangle: &[DVec3; 3],
     other: &[DVec3; 3],

@@ -11,8 +11,8 @@ use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
 
-/// Triangles at a vertex beyond which the vertex is a hub. If the first is a face, all count as faces.
-/// Higher: fans take longer. Lower: parts within others have contacts.
+/// Triangles at a vertex beyond which the vertex is a hub. If the first is a face, all count as
+/// faces. Higher: fans take longer. Lower: parts within others have contacts.
 const HUB: u32 = 1024;
 
 /// Adjacency of a mesh.
@@ -111,7 +111,8 @@ fn open_parts(Edges { all, around, .. }: &Edges, count: usize) -> TriangleSet {
 
 /// Returns the triangles that have the corners of an earlier one.
 ///
-/// All twins of such a triangle are in one triangle, as other edges have several half-edges one way.
+/// All twins of such a triangle are in one triangle, as other edges have several half-edges one
+/// way.
 fn doubles(welded: &[u32], triangles: &[[u32; 3]], twins: &[Option<u32>]) -> TriangleSet {
     let may_be_double = |triangle: usize| {
         let mut neighbours = twins[3 * triangle..][..3].iter().flatten().map(|twin| twin / 3);
@@ -175,9 +176,9 @@ pub fn sides<End: Copy + Ord>([a, b, c]: [End; 3]) -> [[End; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
 }
 
-/// Returns whether a triangle without an area hangs: it does not fill a gap between three others. `None` if it is a segment that
-/// shares no side with a triangle that has an area. `sides` have their ends, and the half-edges of triangles without an area
-/// and of all.
+/// Returns whether a triangle without an area hangs: it does not fill a gap between three others.
+/// `None` if it is a segment that shares no side with a triangle that has an area. `sides` have
+/// their ends, and the half-edges of triangles without an area and of all.
 pub fn hangs<End: PartialEq>(sides: &[([End; 2], [u32; 2]); 3]) -> Option<bool> {
     let is_of_face = |([a, b], [flat, all]): &([End; 2], [u32; 2])| a != b && all > flat;
     let is_filled = |([a, b], [_, all]): &([End; 2], [u32; 2])| a != b && *all == 2;
@@ -185,8 +186,8 @@ pub fn hangs<End: PartialEq>(sides: &[([End; 2], [u32; 2]); 3]) -> Option<bool> 
     (is_point || sides.iter().any(is_of_face)).then(|| !sides.iter().all(is_filled))
 }
 
-/// Roundings of a corner that lies on a side. Higher: low triangles have no contacts. Lower: rounding decides where slivers
-/// have contacts.
+/// Roundings of a corner that lies on a side. Higher: low triangles have no contacts. Lower:
+/// rounding decides where slivers have contacts.
 const ROUNDINGS: f64 = 4.0 * f32::EPSILON as f64;
 
 /// Returns true if a triangle has no area, up to rounding of its corners.
@@ -291,7 +292,8 @@ struct Edge {
 }
 
 impl Edge {
-    /// True if more half-edges run one way than back. A component without a border has a whole winding number at each point.
+    /// True if more half-edges run one way than back. A component without a border has a whole
+    /// winding number at each point.
     fn is_border(&self) -> bool {
         self.counts[0] != self.counts[1]
     }
@@ -350,7 +352,8 @@ fn edges(
 
 /// For each vertex the first one at its place.
 ///
-/// Sorts the vertices by a hash of their places. A map from places would miss the cache at each vertex.
+/// Sorts the vertices by a hash of their places. A map from places would miss the cache at each
+/// vertex.
 fn weld(vertices: &[Vec3]) -> Vec<u32> {
     let hash = |vertex: Vec3| FxBuildHasher.hash_one(place(vertex)) & !u64::from(u32::MAX);
     let mut by_hash: Vec<u64> = (0..).zip(vertices).map(|(i, &v)| hash(v) | i).collect();
@@ -384,7 +387,8 @@ mod tests {
         edges(&welded, &valence(&welded, &triangles), (0..).zip(triangles)).1
     }
 
-    /// Would catch vertices that are joined though they differ, or that are not joined to the first one.
+    /// Would catch vertices that are joined though they differ, or that are not joined to the first
+    /// one.
     #[test]
     fn vertices_at_one_place_are_the_first_of_them() {
         let at = |i: u32| Vec3::new((i * 7 % 50) as f32 - 25.0, (i % 3) as f32, -0.0);

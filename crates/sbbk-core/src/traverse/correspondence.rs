@@ -99,8 +99,8 @@ impl Correspondence {
 }
 
 impl Slab {
-    /// Compares the k-DOPs in each lane along slab `axis` of tree 1. Returns the way from centre 1 to centre 2, and the sum of
-    /// both half-lengths and `slack`.
+    /// Compares the k-DOPs in each lane along slab `axis` of tree 1. Returns the way from centre 1
+    /// to centre 2, and the sum of both half-lengths and `slack`.
     #[inline(always)]
     fn along(
         &self,

@@ -1,7 +1,7 @@
 //! The simultaneous descent of two trees (section 3.2 of the SBBK paper).
 //!
-//! The pairs of children replace a pair of nodes that meet; one SIMD test compares all four. A leaf is not replaced, nor
-//! is a node much smaller than the other one.
+//! The pairs of children replace a pair of nodes that meet; one SIMD test compares all four. A leaf
+//! is not replaced, nor is a node much smaller than the other one.
 //!
 //! For complete trees of n levels in which all nodes meet, the paper counts `(2^(2(n-1)) - 1)/3`
 //! tests between inner nodes and `2^(2(n-1))` between leaves. A descent of one side at a time makes
@@ -16,7 +16,8 @@ use crate::tree::{LeafBatch, Tree};
 
 /// Memory of descents, kept by the caller: after a few queries nothing is allocated.
 ///
-/// The stack holds at most 3 pairs for each level of both trees, besides those at which a descent starts.
+/// The stack holds at most 3 pairs for each level of both trees, besides those at which a descent
+/// starts.
 #[derive(Clone, Debug, Default)]
 pub struct DescentScratch {
     stack: Vec<NodePair>,
@@ -37,8 +38,9 @@ pub fn descend(
     descend_from(start.as_slice(), trees, frame, scratch, visit);
 }
 
-/// Replaces `pairs` by up to `count` pairs of nodes or a few more, or by all pairs of leaves if these are fewer.
-/// Calls of [`descend_from`] for all of them make a whole descent, in parts that may run on several threads.
+/// Replaces `pairs` by up to `count` pairs of nodes or a few more, or by all pairs of leaves if
+/// these are fewer. Calls of [`descend_from`] for all of them make a whole descent, in parts that
+/// may run on several threads.
 pub fn begin_descent(
     trees: (&Tree, &Tree),
     frame: &mut PairFrame,

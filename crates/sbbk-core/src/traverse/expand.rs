@@ -23,9 +23,9 @@ pub(crate) fn leaves_at<'a>(
     is_pair.then(|| (tree1.leaf(link1.index()), tree2.leaf(link2.index())))
 }
 
-/// Ratio of lengths above which only the larger node of a pair is replaced. Small nodes lie whole in the boxes of much
-/// larger ones, so a descent of both compares all of the small ones with each. Higher: more tests for meshes of
-/// unlike sizes. Lower: more tests for meshes of one size.
+/// Ratio of lengths above which only the larger node of a pair is replaced. Small nodes lie whole
+/// in the boxes of much larger ones, so a descent of both compares all of the small ones with each.
+/// Higher: more tests for meshes of unlike sizes. Lower: more tests for meshes of one size.
 const LARGER: f32 = 2.0;
 
 /// The sides of a pair whose children replace them.
@@ -49,8 +49,8 @@ pub(crate) struct Opening {
 }
 
 impl Opening {
-    /// Returns the pairs below a pair that is not a pair of leaves. A leaf stays, and so does a node much smaller than
-    /// the other one.
+    /// Returns the pairs below a pair that is not a pair of leaves. A leaf stays, and so does a
+    /// node much smaller than the other one.
     #[inline(always)]
     pub(crate) fn of((tree1, tree2): (&Tree, &Tree), NodePair(slot1, slot2): NodePair) -> Self {
         let (link1, link2) = (tree1.link(slot1), tree2.link(slot2));

@@ -32,8 +32,8 @@ pub(crate) struct SignedGaps<'a> {
     pub(crate) toward: Option<Toward>,
 }
 
-/// Returns the lanes whose bounds are within a limit, and the bounds. A bound that overflowed to NaN
-/// is kept, as it excludes nothing.
+/// Returns the lanes whose bounds are within a limit, and the bounds. A bound that overflowed to
+/// NaN is kept, as it excludes nothing.
 #[inline(always)]
 pub(crate) fn within(limit: f32, bounds: f32x4, lanes: u32) -> (u32, [f32; 4]) {
     let beyond = bounds.simd_gt(f32x4::splat(limit)).to_bitmask();

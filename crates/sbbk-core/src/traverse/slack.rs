@@ -16,8 +16,8 @@ use crate::volumes::Sphere;
 /// Least slack in units of [`SlackLimits`], for bodies at rest that jitter. Higher: more
 /// candidates; lower: more descents.
 const LEAST_SLACK: f64 = 0.1;
-/// Share of the moving body's radius that a unit of [`SlackLimits`] is at most. Higher: all of a small body
-/// becomes a candidate; lower: more descents.
+/// Share of the moving body's radius that a unit of [`SlackLimits`] is at most. Higher: all of a
+/// small body becomes a candidate; lower: more descents.
 const SMALL: f64 = 0.1;
 /// Least number of queries for which the greatest slack must last; else there is none. Higher: more
 /// descents; lower: wide descents for a single query.
@@ -120,12 +120,14 @@ impl Slack {
         self.last.is_none()
     }
 
-    /// Notes that nothing was within `margin` at the last query. The next queries then plan no descent.
+    /// Notes that nothing was within `margin` at the last query. The next queries then plan no
+    /// descent.
     pub fn note_clear(&mut self, margin: f32) {
         self.descent = self.last.map(|placement| (placement, margin));
     }
 
-    /// Returns how much farther the body may move before the candidates no longer serve; 0 without any.
+    /// Returns how much farther the body may move before the candidates no longer serve; 0 without
+    /// any.
     pub fn rest(&self, body: MovingBody, placement: &Placement, reach: f32) -> f64 {
         self.descent.map_or(0.0, |(then, margin)| {
             f64::from(margin) - f64::from(reach) - body.motion(placement, &then)

@@ -7,9 +7,9 @@
 //! [`correspondence`](crate::volumes::directions::correspondence). Triangles are bounded by their
 //! corners.
 //!
-//! Pairs of triangles of two parallel faces are equally near, and rounding lowers the bounds of nodes. Heights
-//! in `f64` then tell that whole meshes, nodes, or leaves are no nearer. Heights of nodes take long, so each tie of
-//! leaves pays for as many leaves as there were ties.
+//! Pairs of triangles of two parallel faces are equally near, and rounding lowers the bounds of
+//! nodes. Heights in `f64` then tell that whole meshes, nodes, or leaves are no nearer. Heights of
+//! nodes take long, so each tie of leaves pays for as many leaves as there were ties.
 
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
@@ -22,8 +22,8 @@ use crate::simd::{Spread, V3, dot, each, smallest};
 use crate::tree::{LeafBatch, Slot, Tree};
 use crate::volumes::{Aabb, directions};
 
-/// A direction from mesh 1 to mesh 2, and the distance that nearer pairs are below. Mesh 1 is bounded against the direction, so
-/// both meshes have least heights.
+/// A direction from mesh 1 to mesh 2, and the distance that nearer pairs are below. Mesh 1 is
+/// bounded against the direction, so both meshes have least heights.
 #[derive(Clone, Debug)]
 pub(crate) struct Toward {
     distance: f64,
@@ -60,15 +60,16 @@ struct Term {
     coefficient: f32x4,
 }
 
-/// Rounding of projections in `f64`, as a share of the rounding in `f32`: 2⁻⁵³ to 2⁻²⁴, and some more.
+/// Rounding of projections in `f64`, as a share of the rounding in `f32`: 2⁻⁵³ to 2⁻²⁴, and some
+/// more.
 const EXACT_ROUNDING: f64 = 1.0e-8;
 
 /// Projections of coordinates with less rounding than this cannot overflow.
 const LARGEST_ROUNDING: f32 = 1.0e28;
 
 impl Toward {
-    /// Bounds along the unit vector `normal` of frame 1, for pairs nearer than `distance`. `None` if coordinates are so large
-    /// that a projection may overflow.
+    /// Bounds along the unit vector `normal` of frame 1, for pairs nearer than `distance`. `None`
+    /// if coordinates are so large that a projection may overflow.
     pub(crate) fn new(frame: &PairFrame, normal: DVec3, distance: f64) -> Option<Self> {
         let is_safe = frame.rounding.iter().all(|&rounding| rounding < LARGEST_ROUNDING);
         if !is_safe {
@@ -91,7 +92,8 @@ impl Toward {
         })
     }
 
-    /// Lower bounds of the signed distances of the volumes in four lanes: k-DOPs, or boxes where a tree has none.
+    /// Lower bounds of the signed distances of the volumes in four lanes: k-DOPs, or boxes where a
+    /// tree has none.
     #[inline(always)]
     pub(crate) fn gaps(&self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
         let [of1, of2] = &self.directions;
@@ -109,7 +111,8 @@ impl Toward {
         self.leaves_offset + of1.lowest(batch1) + of2.lowest(batch2)
     }
 
-    /// Returns true if no triangles of two meshes are nearer than the distance, by boxes around the meshes.
+    /// Returns true if no triangles of two meshes are nearer than the distance, by boxes around the
+    /// meshes.
     pub(crate) fn are_meshes_beyond(&self, trees: (&Tree, &Tree)) -> bool {
         let [direction1, direction2] = self.exact;
         let lowest = |direction: DVec3, tree: &Tree| {
@@ -119,7 +122,8 @@ impl Toward {
         self.are_beyond(lowest(direction1, trees.0), lowest(direction2, trees.1))
     }
 
-    /// Returns true if no triangles of two leaves are nearer than the distance, up to rounding in `f64`.
+    /// Returns true if no triangles of two leaves are nearer than the distance, up to rounding in
+    /// `f64`.
     #[inline(always)]
     pub(crate) fn are_leaves_beyond(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) -> bool {
         self.gap_of_leaves(batch1, batch2) > self.limit || self.is_tie(batch1, batch2)
@@ -133,8 +137,8 @@ impl Toward {
         is_tie
     }
 
-    /// Returns true if no triangles of two nodes are nearer than the distance, up to rounding in `f64`. Returns false if
-    /// the allowance is used up.
+    /// Returns true if no triangles of two nodes are nearer than the distance, up to rounding in
+    /// `f64`. Returns false if the allowance is used up.
     #[inline(always)]
     pub(crate) fn are_nodes_beyond(&mut self, trees: (&Tree, &Tree), nodes: NodePair) -> bool {
         self.allowance > 0 && self.are_heights_beyond(trees, nodes)

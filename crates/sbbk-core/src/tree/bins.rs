@@ -125,7 +125,8 @@ impl Bins {
         bin.count += 1;
     }
 
-    /// Returns the bin before which the cheapest split with triangles on both sides is, and the boxes of both.
+    /// Returns the bin before which the cheapest split with triangles on both sides is, and the
+    /// boxes of both.
     pub(super) fn best_split(&self) -> Option<(usize, [Bounds; 2])> {
         let bins = &self.bins[..self.bin_count];
         let mut above = [Bin::EMPTY; MOST_BINS + 1];

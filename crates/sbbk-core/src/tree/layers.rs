@@ -51,8 +51,8 @@ impl LayerPlan {
         self.kdop_from_depth.is_some_and(|from| depth >= from)
     }
 
-    /// Chooses a plan from the depths, boxes and [`Self::CANDIDATE`] k-DOPs of the nodes. Also returns the cut of the
-    /// k-DOPs.
+    /// Chooses a plan from the depths, boxes and [`Self::CANDIDATE`] k-DOPs of the nodes. Also
+    /// returns the cut of the k-DOPs.
     pub(super) fn choose<'a>(nodes: impl Iterator<Item = (u32, Aabb, &'a Kdop)>) -> (Self, f32) {
         let diagonals = &directions::DIRECTIONS[3..];
         let per_edge: Vec3 = diagonals.iter().map(|direction| direction.abs()).sum();

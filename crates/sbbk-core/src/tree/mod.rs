@@ -110,8 +110,8 @@ pub enum BuildError {
 }
 
 impl Tree {
-    /// Builds the tree of a mesh. Degenerate triangles are kept. The model of [`LayerPlan`] chooses the layers unless they are
-    /// given.
+    /// Builds the tree of a mesh. Degenerate triangles are kept. The model of [`LayerPlan`] chooses
+    /// the layers unless they are given.
     ///
     /// # Errors
     /// The first fault of the input, in the order counts, indices, coordinates.
@@ -151,7 +151,8 @@ impl Tree {
         })
     }
 
-    /// The largest absolute coordinate of the mesh in its own frame, to which rounding errors are proportional.
+    /// The largest absolute coordinate of the mesh in its own frame, to which rounding errors are
+    /// proportional.
     pub fn magnitude(&self) -> f32 {
         self.bounds.magnitude()
     }

@@ -121,7 +121,8 @@ fn kdops(
     kdops
 }
 
-/// Returns the runtime number of each inner node by its place in the built tree, and the numbers of pairs of boxes and of k-DOPs.
+/// Returns the runtime number of each inner node by its place in the built tree, and the numbers of
+/// pairs of boxes and of k-DOPs.
 fn number_nodes(nodes: &[BuildNode], layers: LayerPlan) -> (Vec<u32>, [usize; 2]) {
     let children_are_kdops = |node: &BuildNode| layers.is_kdop(node.depth + 1);
     let is_inner = |node: &BuildNode| matches!(node.content, Content::Inner(_));

@@ -32,7 +32,8 @@ impl Kdop {
         merged
     }
 
-    /// Returns true if `point` is in the k-DOP, computed in f64. Points around which it is fitted are.
+    /// Returns true if `point` is in the k-DOP, computed in f64. Points around which it is fitted
+    /// are.
     pub fn contains(&self, point: Vec3) -> bool {
         let projections = project(point.as_dvec3().to_array());
         let ends = self.min.iter().zip(&self.max);

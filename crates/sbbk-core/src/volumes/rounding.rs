@@ -10,8 +10,8 @@
 //! `M` is the largest absolute coordinate of a tree, and `T` that of a translation. `s` is the
 //! scale of a rotation, 1 up to the rounding of its quaternion, and `m` a margin. `W = M1 + T +
 //! 2·s·M2` bounds all coordinates of two meshes in the frame of the first, as the row sums of `|R|`
-//! are at most `√3·s < 2·s`. `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Most of
-//! these allowances have a test that fails without.
+//! are at most `√3·s < 2·s`. `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Tests
+//! fail without most of these allowances.
 //!
 //! | place | rounded | bound | allowance |
 //! |---|---|---|---|

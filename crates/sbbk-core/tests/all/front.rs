@@ -15,7 +15,8 @@ use sbbk_core::tree::{LayerPlan, LeafBatch, Tree};
 type Pairs = (BTreeSet<(u32, u32)>, u64);
 type Trees<'a> = (&'a Tree, &'a Tree);
 
-/// The pairs of triangles within the margin, by the exact contact, of the leaves that `visit` visits.
+/// The pairs of triangles within the margin, by the exact contact, of the leaves that `visit`
+/// visits.
 fn pairs_of(
     trees: Trees<'_>,
     pos12: &Pose3,

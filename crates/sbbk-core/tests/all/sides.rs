@@ -69,7 +69,8 @@ fn ways_behind_all_triangles_of_a_ring_begin_in_the_solid() {
     assert!(found > 1000 && missed < found, "{found} found, {missed} missed");
 }
 
-/// Counts triangles that are covered in part or not, and wholly, each by whether they are found to be walls within.
+/// Counts triangles that are covered in part or not, and wholly, each by whether they are found to
+/// be walls within.
 ///
 /// `is_analysed`: components are known to be closed.
 fn walls_within(is_lattice: bool, is_analysed: bool) -> [[u32; 2]; 2] {
@@ -95,8 +96,8 @@ fn walls_within(is_lattice: bool, is_analysed: bool) -> [[u32; 2]; 2] {
     counts
 }
 
-/// Four walls of a house, and six slabs around a room. Boxes that meet have flush faces and an edge in common. Would catch
-/// components that count as open, as four triangles share an edge.
+/// Four walls of a house, and six slabs around a room. Boxes that meet have flush faces and an edge
+/// in common. Would catch components that count as open, as four triangles share an edge.
 #[test]
 fn flush_boxes_with_a_common_edge_have_faces() {
     let boxes_around = |axes: &[usize], half: Vec3, thickness: f32| -> Vec<Cuboid> {
@@ -225,7 +226,8 @@ fn a_side_takes_as_long_in_a_wide_level_as_in_a_narrow_one() {
     }
 }
 
-/// Boxes without a bottom, each in many others. Would catch searches for walls that are bounded for one ray only.
+/// Boxes without a bottom, each in many others. Would catch searches for walls that are bounded for
+/// one ray only.
 #[test]
 fn meshes_of_open_parts_in_each_other_are_analysed_soon() {
     for count in [100, 400] {
@@ -247,8 +249,8 @@ fn meshes_of_open_parts_in_each_other_are_analysed_soon() {
     }
 }
 
-/// Eight slabs with flush tops that overlap by 0.1. Would catch rays that count two flush faces once, and rays that skip a face
-/// near their start.
+/// Eight slabs with flush tops that overlap by 0.1. Would catch rays that count two flush faces
+/// once, and rays that skip a face near their start.
 #[test]
 fn ends_of_flush_slabs_in_each_other_are_walls_within() {
     let slab = |k: usize| {

@@ -3,8 +3,9 @@
 use crate::prelude::*;
 use sbbk_core::tree::{BuildError, BuildStats};
 
-/// Builds a tree and walks over all its nodes. Would catch a triangle that is lost or in two leaves,
-/// and a volume of the wrong layer or with something outside. Also catches nodes out of reach.
+/// Builds a tree and walks over all its nodes. Would catch a triangle that is lost or in two
+/// leaves, and a volume of the wrong layer or with something outside. Also catches nodes out of
+/// reach.
 pub fn check(soup: &Soup, plan: Option<LayerPlan>) -> Tree {
     let tree = soup.tree(plan);
     assert_eq!(tree.triangle_count() as usize, soup.triangles.len());

@@ -1,7 +1,7 @@
 //! Runs of a scene to be played side by side in a browser.
 //!
-//! A [`Recorder`] looks at a world after each step; [`write()`] puts the recordings of one scene into
-//! one self-contained page. Poses are quantised to a thousandth of the smallest moving body.
+//! A [`Recorder`] looks at a world after each step; [`write()`] puts the recordings of one scene
+//! into one self-contained page. Poses are quantised to a thousandth of the smallest moving body.
 //!
 //! ```no_run
 //! use sbbk_lab::backend::Backend;

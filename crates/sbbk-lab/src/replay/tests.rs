@@ -70,7 +70,8 @@ fn check_run(run: &Recorder, written: &Value, quantum: f32) {
     assert_eq!(gone.count(), 1);
 }
 
-/// Would catch lost or mixed up poses, contacts and times, removed bodies that stay, and large pages.
+/// Would catch lost or mixed up poses, contacts and times, removed bodies that stay, and large
+/// pages.
 #[test]
 fn what_is_written_can_be_read() {
     let runs = [Backend::Stock, Backend::Sbbk].map(recorded);
@@ -94,7 +95,8 @@ fn what_is_written_can_be_read() {
     assert!(text.len() < shapes + 40 * head_frames, "{} for {head_frames}", text.len());
 }
 
-/// Would catch a difference before bodies meet, and pages that lack a part or take titles for markup.
+/// Would catch a difference before bodies meet, and pages that lack a part or take titles for
+/// markup.
 #[test]
 fn runs_part_at_a_contact_and_pages_are_whole() {
     let runs = [Backend::Stock, Backend::Sbbk].map(recorded);

@@ -1,6 +1,7 @@
 //! The tables of the documentation, filled with the numbers of a study.
 //!
-//! `docs/data/tables.txt` describes tables, bars and verdicts. A placeholder is `{FUNCTION BACKEND: SCENE / PATH}`:
+//! `docs/data/tables.txt` describes tables, bars and verdicts. A placeholder is `{FUNCTION BACKEND:
+//! SCENE / PATH}`:
 //!
 //! * FUNCTION, which may be left out, joins the numbers of all rows. `sum` and `max` speak for
 //!   themselves. `ms` is the largest of numbers in microseconds. `wrong` counts wrong contacts.
@@ -82,7 +83,8 @@ const MOST_COLUMNS: usize = 100;
 const GAP: usize = 3;
 
 impl Table {
-    /// Returns the widths of the columns. The widest ones are narrowed until the table fits, but not below their words.
+    /// Returns the widths of the columns. The widest ones are narrowed until the table fits, but
+    /// not below their words.
     fn widths(&self) -> Vec<usize> {
         let longest = |column: usize, length: fn(&str) -> usize| {
             self.lines.iter().map(|line| length(&line[column])).max().unwrap_or(0)

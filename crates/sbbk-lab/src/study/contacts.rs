@@ -17,7 +17,8 @@ const DEFAULTS: &str = "contacts: queries with the default settings, µs";
 /// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct ContactsPlan {
-    /// The meshes, in the order of the tables, and their approaches in each case, of five poses each.
+    /// The meshes, in the order of the tables, and their approaches in each case, of five poses
+    /// each.
     pub meshes: Vec<(Mesh, usize)>,
     /// Least number of repeats of times.
     pub repeats: usize,
@@ -116,8 +117,8 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
 }
 
 impl Case<'_> {
-    /// Finds the places and judges first queries there. The seeds of a case depend on its index, and
-    /// not on the order in which threads take cases.
+    /// Finds the places and judges first queries there. The seeds of a case depend on its index,
+    /// and not on the order in which threads take cases.
     fn judged(mut self, index: usize, sides: &[Dispatcher; 2]) -> Self {
         let seeds = (0..self.approach_count).map(|approach| (index << 16 | approach) as u64);
         self.places = seeds.flat_map(|seed| self.places_of(&sides[1], seed)).collect();

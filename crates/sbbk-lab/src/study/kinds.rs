@@ -13,8 +13,8 @@ pub(super) struct Kind {
     pub floor: Option<fn(&mut Rand32) -> Quat>,
 }
 
-/// Every convex kind of Rapier, about `unit` across, floors of 100 units, and compounds: a dumbbell,
-/// and clusters of balls, cuboids, capsules and hulls.
+/// Every convex kind of Rapier, about `unit` across, floors of 100 units, and compounds: a
+/// dumbbell, and clusters of balls, cuboids, capsules and hulls.
 pub(super) fn kinds(unit: f32) -> Vec<Kind> {
     let mut random = Rand32::new(3);
     let cloud: Vec<Vec3> = (0..40).map(|_| 0.5 * unit * random::direction(&mut random)).collect();

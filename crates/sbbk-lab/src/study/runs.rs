@@ -62,8 +62,8 @@ pub fn one_pile(scene: &MonkeyPile, plan: &RunPlan, progress: &Progress) -> Resu
     Results { verdict, ..Results::new("pile", rows) }
 }
 
-/// Runs a scene on all backends step by step in turns, so that a slow spell of the machine slows all
-/// of them. Returns the runs of each backend.
+/// Runs a scene on all backends step by step in turns, so that a slow spell of the machine slows
+/// all of them. Returns the runs of each backend.
 pub(super) fn run(scene: &dyn Scene, plan: &RunPlan, progress: &Progress) -> Vec<Vec<Run>> {
     let mut all: Vec<Vec<Run>> = plan.backends.iter().map(|_| Vec::new()).collect();
     progress.phase(scene.name(), plan.repeats * plan.step_count());
@@ -94,7 +94,8 @@ pub(super) struct Run {
     dispatcher: Dispatcher,
     /// Times of the steps that were not judged, in order.
     times: Vec<StepTimes>,
-    /// Errors of first queries for all contacts of triangles. The pairs are sampled from the broad phase.
+    /// Errors of first queries for all contacts of triangles. The pairs are sampled from the broad
+    /// phase.
     fresh: Errors,
     /// Errors of the answers that Rapier got: pairs sampled from those that it did not recycle.
     updated: Errors,

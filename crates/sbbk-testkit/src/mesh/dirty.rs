@@ -46,8 +46,8 @@ pub fn doubled(mesh: &Mesh, nth: usize) -> Mesh {
     Mesh { triangles: triangles.collect(), ..mesh.clone() }
 }
 
-/// The mesh with slivers, which have no area up to rounding. On an edge of each second triangle lies one with a corner of its
-/// own, one with two equal corners, or a point.
+/// The mesh with slivers, which have no area up to rounding. On an edge of each second triangle
+/// lies one with a corner of its own, one with two equal corners, or a point.
 pub fn with_slivers(mesh: &Mesh, seed: u64) -> Mesh {
     let mut random = Rand32::new(seed);
     let mut dirty = mesh.clone();

@@ -46,8 +46,8 @@ const FACE_FOCUS: Vec3 = Vec3::new(0.0, 0.0, 0.45);
 const SOFT: [i32; 2] = [2, 2];
 const SHARP: [i32; 2] = [1, 1];
 
-/// Profile, and centre, spread, pull and stretch. From large to small: later features shape what the
-/// earlier ones have made.
+/// Profile, and centre, spread, pull and stretch. From large to small: later features shape what
+/// the earlier ones have made.
 const FEATURES: [([i32; 2], [[f32; 3]; 4]); 10] = [
     // Jaw, narrower than the skull.
     (SOFT, [[0.0, -0.85, 0.35], [0.9; 3], [0.0, -0.05, 0.10], [-0.25, 0.0, 0.0]]),

@@ -9,7 +9,8 @@ use super::random::rotation;
 use super::{Scene, SceneWorld, collider};
 use crate::mesh::{self, Mesh};
 
-/// The first experiment (section 4.1, figure 5). A mesh ball falls, by gravity alone, on the rotor of a fixed helicopter, bounces and rolls off.
+/// The first experiment (section 4.1, figure 5). A mesh ball falls, by gravity alone, on the rotor
+/// of a fixed helicopter, bounces and rolls off.
 #[derive(Clone, Copy, Debug)]
 pub struct HelicopterBallDrop;
 
@@ -34,12 +35,13 @@ impl Scene for HelicopterBallDrop {
     }
 }
 
-/// The second experiment (section 4.2, figure 8). Heads are released at once from a loose grid above a
-/// floor, so that they fall and collide with it and with each other.
+/// The second experiment (section 4.2, figure 8). Heads are released at once from a loose grid
+/// above a floor, so that they fall and collide with it and with each other.
 ///
 /// The grid has five layers, each about square. Its cells are just larger than the head's sphere,
-/// so that no two heads touch at the start. Orientations are random. The lowest layer is half a cell
-/// above the floor, a fixed cuboid wide enough for the pile to spread. With the default head the pile is in full contact after about 90 steps (1.5 seconds).
+/// so that no two heads touch at the start. Orientations are random. The lowest layer is half a
+/// cell above the floor, a fixed cuboid wide enough for the pile to spread. With the default head
+/// the pile is in full contact after about 90 steps (1.5 seconds).
 #[derive(Clone, Debug)]
 pub struct MonkeyPile {
     /// Number of heads; the paper has 2000.

@@ -18,12 +18,12 @@ pub fn direction(random: &mut Rand32) -> Vec3 {
     rotation(random) * Vec3::Y
 }
 
-/// Steps of the coarse search for the first touch. Higher: slower tests and studies; lower: thin parts
-/// pass through each other.
+/// Steps of the coarse search for the first touch. Higher: slower tests and studies; lower: thin
+/// parts pass through each other.
 const COARSE_STEPS: u16 = 64;
 
-/// Finds where two shapes meet that come closer from `farthest`. Returns a distance at which they meet,
-/// at most `precision` below one at which they do not; all bits are right for 0.
+/// Finds where two shapes meet that come closer from `farthest`. Returns a distance at which they
+/// meet, at most `precision` below one at which they do not; all bits are right for 0.
 pub fn first_touch(
     farthest: f32,
     precision: f32,

@@ -7,8 +7,8 @@ use rapier3d::math::{Real, Vector};
 use super::{Scene, SceneWorld, collider};
 use crate::mesh;
 
-/// A tower of ten unit cubes on a fixed box 10 units wide. Each is a mesh of 12 triangles. The cubes are a
-/// millimetre apart at the start, and the tower should stand.
+/// A tower of ten unit cubes on a fixed box 10 units wide. Each is a mesh of 12 triangles. The
+/// cubes are a millimetre apart at the start, and the tower should stand.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxStack;
 

@@ -1,8 +1,9 @@
 //! Linear casts of a convex shape against a mesh.
 //!
 //! The distance of two convex bodies is a convex function of time. Newton's method from the start
-//! therefore approaches the first impact from before. It also shows that there is no impact. Normals of curved
-//! shapes are not exact: after a step that goes too far, the next one uses the rule of false position.
+//! therefore approaches the first impact from before. It also shows that there is no impact.
+//! Normals of curved shapes are not exact: after a step that goes too far, the next one uses the
+//! rule of false position.
 
 use std::cell::Cell;
 
@@ -17,8 +18,9 @@ use super::search::{ConvexSearch, FoundTriangle, SupportPlane};
 use crate::mesh::is_minimum;
 use crate::pair::pose::MeshPlace;
 
-/// Bodies that are this much farther than the target at the start are within it, as a share of size. At this share
-/// of their speed they do not approach. Contacts within this may count as touching.
+/// Bodies that are this much farther than the target at the start are within it, as a share of
+/// size. At this share of their speed they do not approach. Contacts within this may count as
+/// touching.
 const WITHIN_TARGET: f64 = 1.0e-10;
 
 /// Bodies that are this much farther than the target have arrived, as a share of size and travel.
@@ -96,7 +98,8 @@ impl ConvexSearch<'_> {
         distance <= 0.0 || is_minimum(self.mesh.mesh, found.triangle, place, (direction, distance))
     }
 
-    /// The first impact of a triangle that moves in the frame of the shape. `last` is the impact at a greater target distance.
+    /// The first impact of a triangle that moves in the frame of the shape. `last` is the impact at
+    /// a greater target distance.
     fn cast_triangle(
         &self,
         triangle: u32,
@@ -144,7 +147,8 @@ struct TriangleCast<'a> {
 }
 
 impl TriangleCast<'_> {
-    /// Returns by how much the plane of the triangle is farther from the shape than the target at the start.
+    /// Returns by how much the plane of the triangle is farther from the shape than the target at
+    /// the start.
     fn plane_at_start(&self) -> Option<Apart> {
         let (a, ConvexSearch { placed, convex, hull, .. }) = (self.start[0], self.search);
         let normal = area_vector(&self.start).try_normalize()?;
@@ -193,8 +197,8 @@ impl TriangleCast<'_> {
         None
     }
 
-    /// The time at which the separating plane is half of [`ARRIVED`] from the target; `None` if that
-    /// is too late.
+    /// The time at which the separating plane is half of [`ARRIVED`] from the target; `None` if
+    /// that is too late.
     fn next_time(&self, apart: &Apart) -> Option<f64> {
         let clear = apart.left / self.approach(apart.normal);
         // Negative, infinite or NaN if the bodies do not approach.

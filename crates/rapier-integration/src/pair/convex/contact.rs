@@ -32,8 +32,8 @@ pub(super) type Hit = ([u32; 2], PartContact);
 pub(crate) enum NormalSource {
     /// The triangle and the shape.
     Own,
-    /// Another triangle, for a ghost contact. Distance and point on the shape belong to the support point
-    /// of the shape.
+    /// Another triangle, for a ghost contact. Distance and point on the shape belong to the support
+    /// point of the shape.
     Neighbour,
     /// The face of the triangle, for a contact at a border.
     Border,
@@ -55,8 +55,8 @@ impl PartContact {
     }
 }
 
-/// Computes with the support map of a shape without its rounding radius; `None` for a half-space. `hull` keeps the points of a
-/// convex polyhedron from call to call.
+/// Computes with the support map of a shape without its rounding radius; `None` for a half-space.
+/// `hull` keeps the points of a convex polyhedron from call to call.
 macro_rules! with_core {
     ($shape:expr, $hull:expr, |$core:ident| $compute:expr) => {{
         macro_rules! of {
@@ -94,8 +94,8 @@ macro_rules! with_core {
     }};
 }
 
-/// Contact of a triangle with a shape without its rounding radius, in the frame of the shape. `hull`
-/// keeps the points of a convex polyhedron from call to call. Boxes are compared first.
+/// Contact of a triangle with a shape without its rounding radius, in the frame of the shape.
+/// `hull` keeps the points of a convex polyhedron from call to call. Boxes are compared first.
 pub(super) fn core_contact(
     placed: &PlacedPart,
     triangle: &[DVec3; 3],

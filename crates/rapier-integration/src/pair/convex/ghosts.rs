@@ -4,27 +4,30 @@
 //! Triangles beside the one below pull a rolling ball to the side. Another triangle with the same
 //! edge or vertex that is nearer, or deeper, shows a ghost:
 //!
-//! * Apart: the distance to a convex shape is a convex function on each triangle. A triangle that is
-//!   nearer somewhere is nearer right beside the common point, which is then no local minimum.
+//! * Apart: the distance to a convex shape is a convex function on each triangle. A triangle that
+//!   is nearer somewhere is nearer right beside the common point, which is then no local minimum.
 //! * Crossing: the triangle of the ghost ends at the edge along the normal. The deeper triangle
 //!   extends beyond: else the same translation would separate it, too.
 //!
-//! A ghost takes the normal of the nearest triangle at its edge or vertex. The nearest contact may be a
-//! ghost as well. Distances fall along this chain, so the chain ends.
+//! A ghost takes the normal of the nearest triangle at its edge or vertex. The nearest contact may
+//! be a ghost as well. Distances fall along this chain, so the chain ends.
 //!
-//! The tip of a crossing shape may be less deep behind both triangles at an edge than in the solid. This is so if a
-//! triangle at the edge extends beyond the contact along its normal. The contact then takes the normal of a face nearby that the shape crosses, if there is one.
+//! The tip of a crossing shape may be less deep behind both triangles at an edge than in the solid.
+//! This is so if a triangle at the edge extends beyond the contact along its normal. The contact
+//! then takes the normal of a face nearby that the shape crosses, if there is one.
 //!
-//! A thin shape that cuts a sharp edge has its end far from the planes of both faces. If the mesh is a solid, the way out of the
-//! wedge behind both planes counts where it is less deep. A sheet has no body behind its triangles.
+//! A thin shape that cuts a sharp edge has its end far from the planes of both faces. If the mesh
+//! is a solid, the way out of the wedge behind both planes counts where it is less deep. A sheet
+//! has no body behind its triangles.
 //!
-//! A shape that stands at the foot of a wall has sunk into the floor, and is nearest to the edge between both.
-//! The wall then keeps a contact with its own normal, if the shape touches the wall once the floor has lifted it.
+//! A shape that stands at the foot of a wall has sunk into the floor, and is nearest to the edge
+//! between both. The wall then keeps a contact with its own normal, if the shape touches the wall
+//! once the floor has lifted it.
 //!
 //! [Borders](crate::pair::borders) of the mesh are met as their faces are.
 //!
-//! Triangles are neighbours if their corners are equal; meshes need no shared vertices. A contact that
-//! no such neighbour explains is compared with all triangles at its point
+//! Triangles are neighbours if their corners are equal; meshes need no shared vertices. A contact
+//! that no such neighbour explains is compared with all triangles at its point
 //! ([`strays`](sbbk_core::surface::strays)).
 
 use std::collections::HashMap;
@@ -36,12 +39,14 @@ use sbbk_core::contact::convex::ConvexContact;
 
 use super::contact::{Hit, PartContact};
 
-/// Share of the size by which two distances must differ to count as different. Higher: ghosts stay, and corners of rounded
-/// features replace exact points. Lower: rounding picks one of two equal contacts at a common edge as the ghost.
+/// Share of the size by which two distances must differ to count as different. Higher: ghosts stay,
+/// and corners of rounded features replace exact points. Lower: rounding picks one of two equal
+/// contacts at a common edge as the ghost.
 pub(super) const ROUNDED: f64 = 1.0e-12;
 
-/// Number of contacts at a corner up to which all are looked at for each other. Edges with more at both ends have a
-/// [`Place`]. Higher: slow at the hub of a fan. Lower: walls are ghosts where many triangles meet.
+/// Number of contacts at a corner up to which all are looked at for each other. Edges with more at
+/// both ends have a [`Place`]. Higher: slow at the hub of a fan. Lower: walls are ghosts where many
+/// triangles meet.
 const MANY: usize = 64;
 
 /// Memory for the search: the contacts by the corners of their triangles.
@@ -68,7 +73,8 @@ pub(crate) struct GhostContacts {
     strays: Vec<u32>,
     /// Number of strays of corners.
     kept_strays: u32,
-    /// Contacts with walls beside a shape that stands on the floor at their foot, along the normals of the walls.
+    /// Contacts with walls beside a shape that stands on the floor at their foot, along the normals
+    /// of the walls.
     pub(super) walls: Vec<(u32, ConvexContact)>,
 }
 
@@ -79,7 +85,8 @@ pub(super) struct UprightContact {
     pub(super) contact: ConvexContact,
     /// The normal in axes that all parts share.
     pub(super) shared_normal: DVec3,
-    /// True if the contact leads [past the border](crate::pair::borders::is_past_border), and does not count.
+    /// True if the contact leads [past the border](crate::pair::borders::is_past_border), and does
+    /// not count.
     pub(super) is_past: bool,
 }
 
@@ -162,12 +169,13 @@ fn ends(feature: Feature) -> [usize; 2] {
 }
 
 impl GhostContacts {
-    /// Finds the contacts that may take another normal: [`exceeded`](Self::exceeded), [`sources`](Self::sources),
-    /// [`borders`](Self::borders) and [`walls`](Self::walls).
+    /// Finds the contacts that may take another normal: [`exceeded`](Self::exceeded),
+    /// [`sources`](Self::sources), [`borders`](Self::borders) and [`walls`](Self::walls).
     ///
-    /// `keys` returns the corners of a contact's triangle. `extends_beyond(a, b)` is true if the triangle of
-    /// contact `a` extends beyond contact `b` along the normal of `b`. `find_strays` adds the
-    /// contacts of triangles at the point of a contact. `find_wall` returns the contact of a wall whose foot a nearer contact is.
+    /// `keys` returns the corners of a contact's triangle. `extends_beyond(a, b)` is true if the
+    /// triangle of contact `a` extends beyond contact `b` along the normal of `b`. `find_strays`
+    /// adds the contacts of triangles at the point of a contact. `find_wall` returns the contact of
+    /// a wall whose foot a nearer contact is.
     pub(super) fn find(
         &mut self,
         contacts: &[Hit],
@@ -208,8 +216,8 @@ impl GhostContacts {
         self.follow_sources();
     }
 
-    /// Returns the contact of a wall if a contact at the same feature, or a stray, is of its floor. A contact
-    /// at the foot of a wall leads into the floor.
+    /// Returns the contact of a wall if a contact at the same feature, or a stray, is of its floor.
+    /// A contact at the foot of a wall leads into the floor.
     fn wall(
         &self,
         contacts: &[Hit],
@@ -399,7 +407,8 @@ impl GhostContacts {
         is_exceeded
     }
 
-    /// Lists a contact and then others whose triangles share a corner with its triangle: up to [`MANY`] at each corner and edge.
+    /// Lists a contact and then others whose triangles share a corner with its triangle: up to
+    /// [`MANY`] at each corner and edge.
     pub(super) fn list_nearby(&mut self, contact: u32) {
         let mut nearby = std::mem::take(&mut self.nearby);
         nearby.clear();
@@ -418,81 +427,4 @@ impl GhostContacts {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::cell::Cell;
-
-    use super::super::contact::NormalSource;
-    use super::*;
-
-    fn contact(distance: f64, feature: Feature) -> PartContact {
-        let point = DVec3::new(0.5, 0.0, 0.0);
-        let contact =
-            ConvexContact { distance, normal: DVec3::Y, on_triangle: point, on_shape: point };
-        PartContact { contact, feature, source: NormalSource::Own }
-    }
-
-    /// Returns the corners of triangle `i` of a strip: triangles share edges with the next ones.
-    fn strip(i: u32) -> [u64; 3] {
-        [i, i + 1, i + 2].map(|i| corner_key(0, Vec3::new(i as f32, (i % 2) as f32, 0.0)))
-    }
-
-    /// Catches a search for neighbours that visits all contacts for each contact.
-    #[test]
-    fn contacts_visited_grow_with_the_number_of_contacts() {
-        const COUNT: u32 = 32_768;
-        let contacts: Vec<_> =
-            (0..COUNT).map(|i| ([i, 0], contact(-0.1, Feature::Edge(1)))).collect();
-        let (mut ghosts, calls) = (GhostContacts::default(), Cell::new(0));
-        let extends_beyond = |_: [u32; 2], _: &ConvexContact| {
-            calls.set(calls.get() + 1);
-            false
-        };
-        ghosts.find(&contacts, |[i, _]| strip(i), extends_beyond, |_, _| {}, |_, _| None);
-        assert!(calls.get() <= 6 * COUNT, "{} calls", calls.get());
-        for i in 0..COUNT {
-            ghosts.list_nearby(i);
-            assert!(ghosts.nearby.len() <= 5, "{} neighbours of {i}", ghosts.nearby.len());
-        }
-    }
-
-    /// Catches ghosts that take the normal of a ghost, and contacts at faces that count as ghosts.
-    #[test]
-    fn chains_of_ghosts_end_at_the_nearest_contact() {
-        for count in [4, 40] {
-            let of = |i: u32| ([i, 0], contact(0.01 * f64::from(i), Feature::Edge(0)));
-            let mut contacts: Vec<_> = (0..count).map(of).collect();
-            let mut ghosts = GhostContacts::default();
-            ghosts.find(&contacts, |[i, _]| strip(i), |_, _| true, |_, _| {}, |_, _| None);
-            assert_eq!(ghosts.sources, vec![0; count as usize]);
-            assert!(ghosts.exceeded.is_empty(), "nothing crosses");
-            contacts[2].1.feature = Feature::Face;
-            contacts[1].1.contact.distance = -0.3;
-            contacts[2].1.contact.distance = -0.2;
-            ghosts.find(&contacts, |[i, _]| strip(i), |_, _| true, |_, _| {}, |_, _| None);
-            assert_eq!(ghosts.sources[..4], [0, 1, 2, 2]);
-            assert_eq!(ghosts.exceeded, [1]);
-            ghosts.list_nearby(1);
-            assert_eq!(ghosts.nearby, [1, 0, 2, 3]);
-        }
-    }
-    /// Two contacts at one vertex, and one at an edge between them in the list. Catches strays of the edge that count for the vertex.
-    #[test]
-    fn strays_belong_to_their_contact() {
-        let at = |feature| contact(-0.1, feature);
-        let mut contacts: Vec<_> =
-            [Feature::Vertex(0), Feature::Edge(0), Feature::Vertex(0), Feature::Face]
-                .into_iter()
-                .zip(0..)
-                .map(|(feature, i)| ([i, 0], at(feature)))
-                .collect();
-        contacts[2].1.contact.normal = DVec3::X;
-        let mut ghosts = GhostContacts::default();
-        let keys = |[i, _]: [u32; 2]| strip([0, 10, 0, 20][i as usize]);
-        let extends_beyond = |[i, _]: [u32; 2], _: &ConvexContact| i == 3;
-        let strays = |([i, _], _): &Hit, strays: &mut Vec<u32>| {
-            strays.extend((*i == 1).then_some(3));
-        };
-        ghosts.find(&contacts, keys, extends_beyond, strays, |_, _| None);
-        assert_eq!(ghosts.exceeded, [1]);
-    }
-}
+mod tests;

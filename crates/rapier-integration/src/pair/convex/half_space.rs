@@ -1,5 +1,5 @@
-//! Contacts of a mesh and a half-space. They have the normal of the half-space, so none is a ghost. Patches take each vertex
-//! once, and the triangles that share it do not repeat it.
+//! Contacts of a mesh and a half-space. They have the normal of the half-space, so none is a ghost.
+//! Patches take each vertex once, and the triangles that share it do not repeat it.
 
 use glamx::DVec3;
 use parry3d::math::Real;
@@ -61,7 +61,8 @@ impl ConvexQuery<'_> {
 }
 
 impl TrianglePartPair<'_> {
-    /// Writes the vertex of a contact, or all corners of its triangle that are within the prediction distance.
+    /// Writes the vertex of a contact, or all corners of its triangle that are within the
+    /// prediction distance.
     pub(super) fn write_half_space(
         &self,
         half_space: &HalfSpace,
@@ -88,7 +89,8 @@ impl TrianglePartPair<'_> {
     }
 }
 
-/// Returns the corners of a triangle within a distance of a half-space, with their numbers and distances.
+/// Returns the corners of a triangle within a distance of a half-space, with their numbers and
+/// distances.
 fn near_corners(
     corners: &[DVec3; 3],
     normal: DVec3,

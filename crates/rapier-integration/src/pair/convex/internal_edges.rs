@@ -1,5 +1,5 @@
-//! Corrects the contacts of a query at internal edges and at borders. [Ghosts](super::ghosts) take the normals of
-//! other contacts. Contacts at borders take the normals of their faces.
+//! Corrects the contacts of a query at internal edges and at borders. [Ghosts](super::ghosts) take
+//! the normals of other contacts. Contacts at borders take the normals of their faces.
 
 use std::cell::RefCell;
 
@@ -107,7 +107,8 @@ impl ConvexQuery<'_> {
         ghosts.find(contacts, keys, extends_beyond, find_strays, find_wall);
     }
 
-    /// Gives contacts at [borders](crate::pair::borders) the normals of their faces. Contacts that lead past a border do not count.
+    /// Gives contacts at [borders](crate::pair::borders) the normals of their faces. Contacts that
+    /// lead past a border do not count.
     fn turn_at_borders(
         &self,
         ghosts: &mut GhostContacts,
@@ -134,8 +135,8 @@ impl ConvexQuery<'_> {
         }
     }
 
-    /// Returns true if the mesh ends at the feature of a contact, at which no other triangle has its edge. The other part of
-    /// a T-junction may go on there.
+    /// Returns true if the mesh ends at the feature of a contact, at which no other triangle has
+    /// its edge. The other part of a T-junction may go on there.
     fn is_border(&self, of: [u32; 2], hit: &PartContact, at_hand: &mut PlacedParts) -> bool {
         let Some(surface) = &self.surface else { return true };
         let [triangle, _] = self.pair.mesh_place.swap(of);
@@ -144,7 +145,8 @@ impl ConvexQuery<'_> {
         place.is_none_or(|(place, _)| around.is_border(triangle, hit.feature, place.as_dvec3()))
     }
 
-    /// Replaces contacts that a triangle [extends beyond](GhostContacts::exceeded) by the least deep way out of the triangle.
+    /// Replaces contacts that a triangle [extends beyond](GhostContacts::exceeded) by the least
+    /// deep way out of the triangle.
     fn turn_to_faces(
         &self,
         ghosts: &mut GhostContacts,
@@ -174,7 +176,8 @@ impl ConvexQuery<'_> {
         }
     }
 
-    /// Returns the least deep way out of a triangle. Candidates are `face` and ways out of wedges of a solid.
+    /// Returns the least deep way out of a triangle. Candidates are `face` and ways out of wedges
+    /// of a solid.
     fn least_deep(
         &self,
         ghosts: &GhostContacts,

@@ -3,9 +3,11 @@
 //! * [`shape`], [`parts`]: Parry's shapes, with bounds and poses.
 //! * [`near`]: descends Parry's BVH of the mesh with the box of a part in the frame of the part.
 //! * [`contact`]: the exact contact of a triangle and a part.
-//! * [`triangle_part`], [`points`]: write a contact to a manifold. [`half_space`]: contacts with a half-space.
+//! * [`triangle_part`], [`points`]: write a contact to a manifold. [`half_space`]: contacts with a
+//!   half-space.
 //! * [`pair`]: a mesh and its parts. [`query`]: the contact query.
-//! * [`ghosts`], [`internal_edges`]: correct contacts at internal edges. [`walls`]: removes contacts with walls that are not in the way. [`push_out`]: moves parts out of solids.
+//! * [`ghosts`], [`internal_edges`]: correct contacts at internal edges. [`walls`]: removes
+//!   contacts with walls that are not in the way. [`push_out`]: moves parts out of solids.
 //! * [`search`], [`cast`]: queries without manifolds.
 
 mod cast;

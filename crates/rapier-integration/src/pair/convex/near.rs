@@ -13,8 +13,8 @@ use super::parts::PlacedPart;
 use super::shape::ConvexShape;
 use crate::mesh::MeshView;
 
-/// Calls `found` with all triangles within `margin` of a part, and a few others, in the order of the
-/// BVH, until it returns `Break`.
+/// Calls `found` with all triangles within `margin` of a part, and a few others, in the order of
+/// the BVH, until it returns `Break`.
 pub(super) fn triangles_near(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
@@ -45,7 +45,8 @@ pub(super) fn triangles_near(
     }
 }
 
-/// Calls `found` with triangles until `found` breaks. Their boxes and the nodes around them pass a test.
+/// Calls `found` with triangles until `found` breaks. Their boxes and the nodes around them pass a
+/// test.
 #[inline(always)]
 fn visit(
     mesh: &MeshView<'_>,
@@ -80,8 +81,8 @@ pub(crate) fn lowest(node: TestedBox, normal: DVec3) -> f64 {
     normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3())
 }
 
-/// Returns the plane `normal·x = height` above all points within `margin` of a half-space, in the frame
-/// of the mesh. `placement` is that frame in the frame of the half-space.
+/// Returns the plane `normal·x = height` above all points within `margin` of a half-space, in the
+/// frame of the mesh. `placement` is that frame in the frame of the half-space.
 pub(super) fn plane(
     placement: &Placement,
     half_space: &HalfSpace,

@@ -35,7 +35,8 @@ impl ConvexPair<'_> {
         matches!(self.parts, Parts::One(ConvexShape::Ball(_)))
     }
 
-    /// Returns true if contacts make patches: unless the mesh is deformable or the shape is a ball, which has few contacts of one point.
+    /// Returns true if contacts make patches: unless the mesh is deformable or the shape is a ball,
+    /// which has few contacts of one point.
     pub(super) fn has_patches(&self) -> bool {
         self.config.has_patches() && self.mesh.is_rigid() && !self.is_ball()
     }

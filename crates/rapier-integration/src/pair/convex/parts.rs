@@ -33,7 +33,8 @@ pub(super) struct Part<'p> {
 }
 
 impl<'a> Parts<'a> {
-    /// Returns `None` for shapes that only Parry supports. Does not look at the [parts](Self::are_supported) of compounds.
+    /// Returns `None` for shapes that only Parry supports. Does not look at the
+    /// [parts](Self::are_supported) of compounds.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
         match shape.as_typed_shape() {
             TypedShape::Compound(compound) => {
@@ -75,8 +76,8 @@ impl<'a> Parts<'a> {
         result
     }
 
-    /// Calls `found` with the parts whose boxes intersect a box in the frame of the whole. Boxes around several parts must also be
-    /// near.
+    /// Calls `found` with the parts whose boxes intersect a box in the frame of the whole. Boxes
+    /// around several parts must also be near.
     pub(super) fn intersecting(
         &self,
         aabb: &Aabb,
@@ -251,8 +252,8 @@ impl PlacedPart {
         }
     }
 
-    /// Returns true only if a triangle is farther than `reach` from the part without its radius: their
-    /// boxes are, along the axes of the part.
+    /// Returns true only if a triangle is farther than `reach` from the part without its radius:
+    /// their boxes are, along the axes of the part.
     #[inline(always)]
     pub(super) fn is_beyond(&self, [a, b, c]: &[DVec3; 3], reach: f64) -> bool {
         let (min, max, reach) = self.extent.widest(reach);
@@ -267,7 +268,8 @@ mod tests {
 
     use super::*;
 
-    /// Catches parts that stick out of the ball or the bound of coordinates: slack would be too large.
+    /// Catches parts that stick out of the ball or the bound of coordinates: slack would be too
+    /// large.
     #[test]
     fn parts_are_within_the_bounds() {
         let [a, b, c] =

@@ -30,11 +30,12 @@ pub(super) struct PointPair {
 /// Features of closest points.
 const UNNAMED: [PackedFeatureId; 2] = [PackedFeatureId::UNKNOWN; 2];
 
-/// Calls `found` with the contact points of a triangle and a shape with polygonal features. These are closest
-/// points, points of a rim, and corners of the overlap of the triangle and the facing feature.
+/// Calls `found` with the contact points of a triangle and a shape with polygonal features. These
+/// are closest points, points of a rim, and corners of the overlap of the triangle and the facing
+/// feature.
 ///
-/// `normal` replaces the normal of the contact where normal cones have turned it. `equal_depth` is the difference up to which points
-/// count as equally deep.
+/// `normal` replaces the normal of the contact where normal cones have turned it. `equal_depth` is
+/// the difference up to which points count as equally deep.
 pub(super) fn contact_points(
     corners: &[DVec3; 3],
     shape: ConvexShape<'_>,
@@ -80,8 +81,9 @@ pub(super) fn contact_points(
     }
 }
 
-/// Calls `found` with the corners of the overlap of a triangle and a feature. Returns true if one is as near as the closest points.
-/// No corner is nearer than the closest points if the normal is theirs (`is_own`).
+/// Calls `found` with the corners of the overlap of a triangle and a feature. Returns true if one
+/// is as near as the closest points. No corner is nearer than the closest points if the normal is
+/// theirs (`is_own`).
 #[inline(always)]
 fn overlap_points(
     corners: &[DVec3; 3],
@@ -93,8 +95,8 @@ fn overlap_points(
 ) -> bool {
     let mut points = FeaturePoints::new();
     clip_feature(corners, polygon, normal, &mut points);
-    // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces. Points nearer
-    // than the closest ones, or beyond the support point, are not on the shape.
+    // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces. Points
+    // nearer than the closest ones, or beyond the support point, are not on the shape.
     let size = polygon.iter().fold(0.0, |size: f64, x| size.max(x.abs().max_element()));
     let slack = f64::from(gamma(64)) * size;
     let is_neighbours = *source == NormalSource::Neighbour;
@@ -111,12 +113,13 @@ fn overlap_points(
     has_closest
 }
 
-/// An end of an edge counts if its distance from the border exceeds the least one by less than this share. Higher: rods that
-/// stick out over a cliff are held up. Lower: rods that roll over a border turn.
+/// An end of an edge counts if its distance from the border exceeds the least one by less than this
+/// share. Higher: rods that stick out over a cliff are held up. Lower: rods that roll over a border
+/// turn.
 const ALONG_BORDER: f64 = 0.1;
 
-/// Calls `found` with the ends of the part of a shape's edge that is along a border. The nearest points alone would turn a rod that
-/// rolls from mesh to mesh. `normal`: of the face at the border.
+/// Calls `found` with the ends of the part of a shape's edge that is along a border. The nearest
+/// points alone would turn a rod that rolls from mesh to mesh. `normal`: of the face at the border.
 fn border_points(
     [a, b]: [DVec3; 2],
     [p, q]: [DVec3; 2],
@@ -146,11 +149,12 @@ fn border_points(
     }
 }
 
-/// Returns the points of a rim beside a contact, one on either side. A body on one point of a round rim would roll to another in
-/// each step, and never rest. `polygon` has corners of the face that touches.
+/// Returns the points of a rim beside a contact, one on either side. A body on one point of a round
+/// rim would roll to another in each step, and never rest. `polygon` has corners of the face that
+/// touches.
 ///
-/// A tilt moves a point by its lever. So a tilt first reaches the point with the greatest lever for its distance and `equal_depth`.
-/// On a circle that point is the nearest one after the tilt below.
+/// A tilt moves a point by its lever. So a tilt first reaches the point with the greatest lever for
+/// its distance and `equal_depth`. On a circle that point is the nearest one after the tilt below.
 fn rim_points(
     corners: &[DVec3; 3],
     map: &dyn PolygonalFeatureMap,
@@ -188,7 +192,8 @@ fn feature_id(polygon: &PolygonalFeature, feature: Feature) -> PackedFeatureId {
     }
 }
 
-/// Returns a point of the shape with the point of the triangle along a normal; `None` beside the triangle.
+/// Returns a point of the shape with the point of the triangle along a normal; `None` beside the
+/// triangle.
 fn on_face(corners: &[DVec3; 3], on_shape: DVec3, normal: DVec3) -> Option<PointPair> {
     let (face, features) = (area_vector(corners), UNNAMED);
     let distance = (on_shape - corners[0]).dot(face) / normal.dot(face);
@@ -197,8 +202,8 @@ fn on_face(corners: &[DVec3; 3], on_shape: DVec3, normal: DVec3) -> Option<Point
     is_over(corners, on_triangle, 0.0).then_some(point)
 }
 
-/// Returns true if a point is over a triangle, seen along the normal of the triangle. Barycentric coordinates may be as far below
-/// zero as `slack`.
+/// Returns true if a point is over a triangle, seen along the normal of the triangle. Barycentric
+/// coordinates may be as far below zero as `slack`.
 pub(super) fn is_over(corners @ [a, b, c]: &[DVec3; 3], point: DVec3, slack: f64) -> bool {
     let face = area_vector(corners);
     let least = -slack * face.length_squared();
@@ -206,12 +211,13 @@ pub(super) fn is_over(corners @ [a, b, c]: &[DVec3; 3], point: DVec3, slack: f64
     is_beside(a, b) && is_beside(b, c) && is_beside(c, a)
 }
 
-/// Any triangle, for the ids of its features. Stored: Parry's constructor takes longer than the clip.
+/// Any triangle, for the ids of its features. Stored: Parry's constructor takes longer than the
+/// clip.
 static TRIANGLE: LazyLock<PolygonalFeature> =
     LazyLock::new(|| Triangle::new(Vector::X, Vector::Y, Vector::Z).into());
 
-/// Angle at the centre of a ball by which a ray may miss a triangle and still hit. A ray at an edge must
-/// not miss both triangles because of rounding.
+/// Angle at the centre of a ball by which a ray may miss a triangle and still hit. A ray at an edge
+/// must not miss both triangles because of rounding.
 const RAY_SLACK: f64 = 1.0e-6;
 
 /// Returns the length of a ray from the origin along a unit vector to a triangle, if it hits.
@@ -235,7 +241,8 @@ pub(super) fn ray_length(corners: &[DVec3; 3], direction: DVec3) -> Option<f64> 
 /// Stored: Parry's constructor is not inlined.
 pub(super) static FACE: LazyLock<PackedFeatureId> = LazyLock::new(|| PackedFeatureId::face(0));
 
-/// Returns the feature of a shape that faces a direction at a point, and true if it is part of a face with more corners.
+/// Returns the feature of a shape that faces a direction at a point, and true if it is part of a
+/// face with more corners.
 pub(super) fn facing_feature(
     shape: ConvexShape<'_>,
     direction: Vec3,
@@ -262,8 +269,8 @@ pub(super) fn facing_feature(
     (feature, false)
 }
 
-/// Returns the face of a polyhedron that faces a direction, and true if it has more corners than those returned. Up to four corners
-/// are returned, which are [far apart](spread).
+/// Returns the face of a polyhedron that faces a direction, and true if it has more corners than
+/// those returned. Up to four corners are returned, which are [far apart](spread).
 fn facing_face(hull: &ConvexPolyhedron, direction: Vec3, point: Vec3) -> (PolygonalFeature, bool) {
     let faces = hull.faces();
     let heights = faces.iter().map(|face| face.normal.dot(direction)).enumerate();
@@ -286,8 +293,9 @@ fn facing_face(hull: &ConvexPolyhedron, direction: Vec3, point: Vec3) -> (Polygo
     (feature, vertices.len() > num_vertices)
 }
 
-/// Returns all of up to four corners of a polygon. Else returns the corner nearest to a point, the farthest from that one, and the
-/// farthest on either side of both. Parry takes the first four, which may all be at one end.
+/// Returns all of up to four corners of a polygon. Else returns the corner nearest to a point, the
+/// farthest from that one, and the farthest on either side of both. Parry takes the first four,
+/// which may all be at one end.
 fn spread(
     count: usize,
     corner: impl Fn(usize) -> Vec3,
@@ -355,7 +363,8 @@ mod tests {
         }
     }
 
-    /// The point is at one end of the flat side of a half disc. Would catch a corner that comes twice.
+    /// The point is at one end of the flat side of a half disc. Would catch a corner that comes
+    /// twice.
     #[test]
     fn corners_far_apart_are_unlike_if_all_are_on_one_side() {
         let corner = |i: usize| {

@@ -1,9 +1,9 @@
 //! Push-outs: contacts that move convex shapes out of solids
 //! ([`SbbkConfig::convex_leave_solids`](crate::SbbkConfig::convex_leave_solids)).
 //!
-//! A contact with a triangle separates by the least translation. That translation points inward once
-//! more than half of the shape is inside. A push-out then replaces all contacts of the part. It leads
-//! out through the face that is nearest to the middle of the part.
+//! A contact with a triangle separates by the least translation. That translation points inward
+//! once more than half of the shape is inside. A push-out then replaces all contacts of the part.
+//! It leads out through the face that is nearest to the middle of the part.
 
 use glamx::DVec3;
 use sbbk_core::contact::Feature;
@@ -16,8 +16,9 @@ use super::query::{ConvexQuery, ConvexScratch, PlacedParts};
 use crate::mesh::{BEHIND, LazySurface, is_covered};
 use crate::pair::query::ContactList;
 
-/// Least depth of a contact, in radii of the part, from which half of the part may be inside. The middle of a cone is outside
-/// then. Higher: cones stay in solids; lower: more searches for the nearest face.
+/// Least depth of a contact, in radii of the part, from which half of the part may be inside. The
+/// middle of a cone is outside then. Higher: cones stay in solids; lower: more searches for the
+/// nearest face.
 const DEEP: f64 = 0.1;
 
 impl<'q> ConvexQuery<'q> {

@@ -66,7 +66,8 @@ pub(crate) struct ConvexScratch {
     pub(super) dropped: DroppedContacts,
     /// Parts with the distances of their contacts, and push-outs.
     pub(super) push_outs: (Vec<(u32, f64)>, ContactList<PartContact>),
-    /// True for each vertex of the mesh that has a contact with a [half-space](super::half_space). All false between queries.
+    /// True for each vertex of the mesh that has a contact with a [half-space](super::half_space).
+    /// All false between queries.
     pub(super) is_vertex_known: Vec<bool>,
 }
 
@@ -128,7 +129,8 @@ impl ConvexQuery<'_> {
         part: &Part<'_>,
         at_hand: &'s mut PlacedParts,
     ) -> &'s PlacedPart {
-        /// Parts kept at a time. Higher: more memory; lower: parts of large compounds are placed again.
+        /// Parts kept at a time. Higher: more memory; lower: parts of large compounds are placed
+        /// again.
         const AT_HAND: usize = 64;
         let slot = index as usize % AT_HAND;
         if at_hand.len() <= slot {
@@ -149,8 +151,8 @@ impl PairQuery for ConvexQuery<'_> {
     type Contact = PartContact;
     type Scratch = ConvexScratch;
 
-    /// Larger than for two meshes, as candidates out of reach cost little. Higher: slower in fast motion;
-    /// lower: slower in slow motion.
+    /// Larger than for two meshes, as candidates out of reach cost little. Higher: slower in fast
+    /// motion; lower: slower in slow motion.
     const SLACK: SlackLimits = SlackLimits { steps: 16.0, greatest: 5.0 };
 
     fn memory() -> &'static LocalKey<Memory<Self>> {
@@ -171,8 +173,9 @@ impl PairQuery for ConvexQuery<'_> {
         if self.pair.config.leave_solids() { 0.0 } else { f64::INFINITY }
     }
 
-    /// Returns the prediction distance plus the rounding of sixty operations on the largest coordinates.
-    /// The rounding exceeds the error of contacts with curved shapes, 1e-7 of the distance.
+    /// Returns the prediction distance plus the rounding of sixty operations on the largest
+    /// coordinates. The rounding exceeds the error of contacts with curved shapes, 1e-7 of the
+    /// distance.
     fn reach(&self) -> Real {
         let offset = self.pair.pose.pos12.translation.abs().max_element();
         let largest = self.pair.mesh.magnitude() + offset + self.part_data.magnitude;
@@ -288,8 +291,8 @@ impl PairQuery for ConvexQuery<'_> {
 }
 
 impl ConvexQuery<'_> {
-    /// Adds the contact of a ball and a triangle within the prediction distance. Returns a lower bound of
-    /// their distance, at most `margin`.
+    /// Adds the contact of a ball and a triangle within the prediction distance. Returns a lower
+    /// bound of their distance, at most `margin`.
     #[inline(always)]
     fn add_ball(
         &self,
@@ -335,7 +338,8 @@ impl ConvexQuery<'_> {
         dropped.remove_from(contacts);
     }
 
-    /// Returns the normal of a contact in the axes of the mesh. A single part needs no common axes and keeps its own.
+    /// Returns the normal of a contact in the axes of the mesh. A single part needs no common axes
+    /// and keeps its own.
     pub(super) fn shared_normal(
         &self,
         subshapes: [u32; 2],
@@ -347,7 +351,8 @@ impl ConvexQuery<'_> {
         self.with_pair(subshapes, at_hand, in_mesh).unwrap_or(contact.normal)
     }
 
-    /// Returns a test for boxes around some parts: false only if all triangles are farther than `margin`.
+    /// Returns a test for boxes around some parts: false only if all triangles are farther than
+    /// `margin`.
     fn near_mesh(&self, margin: Real) -> impl Fn(TestedBox) -> bool {
         let ConvexPair { mesh, mesh_place, pose, .. } = self.pair;
         let [_, placement] = mesh_place.placements(pose);

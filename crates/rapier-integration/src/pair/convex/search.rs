@@ -20,12 +20,14 @@ use super::shape::{ConvexShape, Extent, KeptHull};
 use crate::mesh::{MeshView, box_of};
 use crate::pair::pose::{MeshPlace, PairPose, ROUNDING};
 
-/// Distance up to which bodies touch, as a share of their coordinates in the frame of the shape: the
-/// rounding of a distance of zero. Higher: bodies touch early; lower: rounding separates bodies.
+/// Distance up to which bodies touch, as a share of their coordinates in the frame of the shape:
+/// the rounding of a distance of zero. Higher: bodies touch early; lower: rounding separates
+/// bodies.
 const TOUCHING: f64 = 1.0e-12;
 
-/// Limit, as a share of the smaller body's size, above which searches for the deepest contact first look for one that is near.
-/// Changes time alone. Higher: slower far from the mesh; lower: slower near it.
+/// Limit, as a share of the smaller body's size, above which searches for the deepest contact first
+/// look for one that is near. Changes time alone. Higher: slower far from the mesh; lower: slower
+/// near it.
 pub(crate) const WIDE: f64 = 0.1;
 
 /// A mesh and one convex shape at a pose.
@@ -49,8 +51,8 @@ pub(crate) struct FoundTriangle {
     pub(crate) is_touching: bool,
 }
 
-/// A plane on which the shape stands, across the normal of a contact. All of the mesh that is farther than the contact is below
-/// the plane by more than its distance.
+/// A plane on which the shape stands, across the normal of a contact. All of the mesh that is
+/// farther than the contact is below the plane by more than its distance.
 #[derive(Copy, Clone)]
 pub(super) struct SupportPlane {
     /// Unit vector from the mesh to the shape, in the frame of the shape.
@@ -61,8 +63,8 @@ pub(super) struct SupportPlane {
 }
 
 impl SupportPlane {
-    /// Returns the gap between a triangle and the shape along the normal. No distance is less, as the distance is the greatest
-    /// gap of all directions.
+    /// Returns the gap between a triangle and the shape along the normal. No distance is less, as
+    /// the distance is the greatest gap of all directions.
     fn gap(&self, corners: [Vec3; 3]) -> f64 {
         let heights = corners.map(|corner| self.normal_in_mesh.dot(corner.as_dvec3()));
         self.height - heights.into_iter().fold(f64::NEG_INFINITY, f64::max)
@@ -157,8 +159,8 @@ impl<'a> ConvexSearch<'a> {
         deepest.map(|(found, _)| found)
     }
 
-    /// Returns the plane across a normal in the frame of the shape on which the shape stands. It is lower by the rounding of
-    /// heights.
+    /// Returns the plane across a normal in the frame of the shape on which the shape stands. It is
+    /// lower by the rounding of heights.
     pub(super) fn support_plane(&self, normal: DVec3) -> SupportPlane {
         let Placement { rotation, translation, .. } = self.placed.placement;
         let support = core_support(self.convex, &self.hull, -normal);
@@ -196,9 +198,9 @@ impl<'a> ConvexSearch<'a> {
         })
     }
 
-    /// Calls `time` with triangles that may have the least time up to a limit. No time is less than the distance
-    /// divided by `speed`, or than the time in which a box is `clear`. A `sweep` is a box around the shape, and its velocity in the
-    /// frame of the mesh.
+    /// Calls `time` with triangles that may have the least time up to a limit. No time is less than
+    /// the distance divided by `speed`, or than the time in which a box is `clear`. A `sweep` is a
+    /// box around the shape, and its velocity in the frame of the mesh.
     pub(crate) fn soonest(
         &self,
         limit: f64,
@@ -217,8 +219,8 @@ impl<'a> ConvexSearch<'a> {
         };
     }
 
-    /// Returns a lower bound of the distance between a box of the mesh and the shape. `around` is the box around
-    /// the shape in the frame of the mesh.
+    /// Returns a lower bound of the distance between a box of the mesh and the shape. `around` is
+    /// the box around the shape in the frame of the mesh.
     fn gap(&self, around: Aabb) -> impl Fn(TestedBox) -> Real {
         let plane = match self.convex {
             ConvexShape::HalfSpace(half_space) => {
@@ -243,9 +245,9 @@ impl<'a> ConvexSearch<'a> {
         gamma(32) * self.mesh.magnitude().max(size)
     }
 
-    /// Returns a lower bound of the time until a box of the mesh is within `target` of the moving shape. The bound is
-    /// `Real::MAX` if the two pass each other. `velocity` and `around`, the box around the shape, are in the
-    /// frame of the mesh.
+    /// Returns a lower bound of the time until a box of the mesh is within `target` of the moving
+    /// shape. The bound is `Real::MAX` if the two pass each other. `velocity` and `around`, the box
+    /// around the shape, are in the frame of the mesh.
     pub(super) fn time(
         &self,
         around: Aabb,
@@ -281,8 +283,8 @@ impl<'a> ConvexSearch<'a> {
         }
     }
 
-    /// Returns the triangle with the least cost up to a limit. `bound` is a lower bound of the costs in
-    /// a box.
+    /// Returns the triangle with the least cost up to a limit. `bound` is a lower bound of the
+    /// costs in a box.
     pub(super) fn least<T>(
         &self,
         limit: f64,
@@ -298,7 +300,8 @@ impl<'a> ConvexSearch<'a> {
             limit,
             |node: &BvhNode, _| bound(box_of(node)),
             |triangle, best| {
-                // A flat shape may meet many triangles of a floor at once. Costs that round to the best one are of no use.
+                // A flat shape may meet many triangles of a floor at once. Costs that round to the
+                // best one are of no use.
                 let less = f64::from(best).midpoint(best.next_down().into());
                 cost(triangle, if best < limit { less } else { best.into() })
             },

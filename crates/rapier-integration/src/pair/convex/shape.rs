@@ -115,8 +115,8 @@ impl ConvexShape<'_> {
     }
 }
 
-/// Identifies a shape in constant time. Hosts drop the workspace when they replace or edit a shape; the token
-/// notices the shapes of hosts that do not.
+/// Identifies a shape in constant time. Hosts drop the workspace when they replace or edit a shape;
+/// the token notices the shapes of hosts that do not.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) struct ShapeToken {
     kind: ShapeType,
@@ -180,8 +180,8 @@ impl Extent {
         }
     }
 
-    /// Returns the largest absolute coordinate, with the radius; 0 for a half-space. Rounding is relative
-    /// to it.
+    /// Returns the largest absolute coordinate, with the radius; 0 for a half-space. Rounding is
+    /// relative to it.
     pub(super) fn size(&self) -> Real {
         self.core_size() + self.radius
     }
@@ -203,8 +203,8 @@ impl Extent {
         (self.min, self.max, self.radius)
     }
 
-    /// Returns the box around the shape without its radius, and `reach`, grown by the rounding of Parry's
-    /// support points. The reach of a half-space is infinite.
+    /// Returns the box around the shape without its radius, and `reach`, grown by the rounding of
+    /// Parry's support points. The reach of a half-space is infinite.
     #[inline(always)]
     pub(super) fn widest(&self, reach: f64) -> (DVec3, DVec3, f64) {
         let missed = if self.is_infinite { f64::INFINITY } else { gamma(16).into() };
@@ -214,8 +214,8 @@ impl Extent {
 
     /// Returns an upper bound of the shape's largest coordinate along a direction of any length.
     ///
-    /// Parry's support points are found in f32: they are off, or not the best, by a few roundings of the
-    /// largest coordinate.
+    /// Parry's support points are found in f32: they are off, or not the best, by a few roundings
+    /// of the largest coordinate.
     pub(super) fn height_along(&self, shape: ConvexShape<'_>, direction: DVec3) -> f64 {
         match shape {
             ConvexShape::Ball(ball) => f64::from(ball.radius) * direction.length(),

@@ -19,12 +19,14 @@ use crate::pair::borders::is_past_border;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::{ContactSummary, PatchPlan};
 
-/// Least cosine between the normals of a contact and of a face whose normal it takes. Higher: shapes deep in a mesh stumble
-/// over internal edges. Lower: shapes half within a wall are pushed through it.
+/// Least cosine between the normals of a contact and of a face whose normal it takes. Higher:
+/// shapes deep in a mesh stumble over internal edges. Lower: shapes half within a wall are pushed
+/// through it.
 const AGAINST: f64 = -0.05;
 
-/// Greatest depth along the normal of a face, as a share of the height of the part, that never shows a part beyond the face.
-/// Higher: shapes over an edge of a box are pushed in. Lower: tips stumble over internal edges.
+/// Greatest depth along the normal of a face, as a share of the height of the part, that never
+/// shows a part beyond the face. Higher: shapes over an edge of a box are pushed in. Lower: tips
+/// stumble over internal edges.
 const HARDLY_BEHIND: f64 = 0.1;
 
 /// A triangle and a part at the pose of a query.
@@ -55,17 +57,18 @@ const UPRIGHT: f64 = 1.0e-3;
 /// lower: rounding of the normals of curved shapes counts.
 const LEVEL: f64 = 2.0e-3;
 
-/// Depth, in prediction distances, up to which a part counts as above the face at a border. Higher: rims do not carry what
-/// overhangs them. Lower: fast bodies stumble where meshes meet.
+/// Depth, in prediction distances, up to which a part counts as above the face at a border. Higher:
+/// rims do not carry what overhangs them. Lower: fast bodies stumble where meshes meet.
 const BORDER_DEPTH: f64 = 0.5;
 
-/// Barycentric coordinate from which a point counts as within a triangle. Higher: rounding hides walls from what stands at
-/// their feet. Lower: walls have contacts above them.
+/// Barycentric coordinate from which a point counts as within a triangle. Higher: rounding hides
+/// walls from what stands at their feet. Lower: walls have contacts above them.
 const OVER_SLACK: f64 = 1.0e-4;
 
 impl TrianglePartPair<'_> {
-    /// Returns the point of a contact in the frame of the mesh, and the distance up to which triangles
-    /// touch that point. A contact with the normal of its triangle is no ghost and has `None`.
+    /// Returns the point of a contact in the frame of the mesh, and the distance up to which
+    /// triangles touch that point. A contact with the normal of its triangle is no ghost and has
+    /// `None`.
     pub(super) fn touched_place(&self, contact: &ConvexContact) -> Option<(Vec3, f64)> {
         let corners = self.corners.map(|corner| corner.as_dvec3());
         let [normal, _] = self.placed.directions(contact.normal);
@@ -146,8 +149,8 @@ impl TrianglePartPair<'_> {
         out.normals = normals;
     }
 
-    /// Returns the summary of a contact for contact reduction, in the frame of the part; `None` if it
-    /// has no points. `points` is memory.
+    /// Returns the summary of a contact for contact reduction, in the frame of the part; `None` if
+    /// it has no points. `points` is memory.
     pub(super) fn summary(
         &self,
         contact: &PartContact,
@@ -181,8 +184,8 @@ impl TrianglePartPair<'_> {
         self.pair.mesh_place.swap([in_mesh, -in_part]).map(|normal| normal.as_vec3())
     }
 
-    /// Returns the normals, turned into the normal cones of triangle and part; `None` if these reject
-    /// the contact.
+    /// Returns the normals, turned into the normal cones of triangle and part; `None` if these
+    /// reject the contact.
     #[inline(always)]
     fn constrained_normals(&self, contact: &ConvexContact) -> Option<Normals> {
         let free = self.normals(contact);
@@ -215,8 +218,9 @@ impl TrianglePartPair<'_> {
         extends_beyond(&self.placed.in_part(self.corners), contact)
     }
 
-    /// Returns the contact along the normal of the triangle, for another contact of the part. `None` if the bodies cross nowhere
-    /// along that normal, or if the contact leads against the other one and is not [`HARDLY_BEHIND`].
+    /// Returns the contact along the normal of the triangle, for another contact of the part.
+    /// `None` if the bodies cross nowhere along that normal, or if the contact leads against the
+    /// other one and is not [`HARDLY_BEHIND`].
     pub(super) fn face_contact_for(&self, other: &ConvexContact) -> Option<ConvexContact> {
         let corners = &self.placed.in_part(self.corners);
         let (face, feature) = (self.face_contact(corners)?, Feature::Face);
@@ -233,9 +237,10 @@ impl TrianglePartPair<'_> {
         (is_crossing && is_safe()).then_some(face)
     }
 
-    /// Returns the least deep contact that moves the part out of the wedge behind the planes of this triangle and another one. The
-    /// way leads over the edge of the wedge, or along the normal of the other triangle. `None` unless each triangle is behind
-    /// the other one, and the edge is sharp.
+    /// Returns the least deep contact that moves the part out of the wedge behind the planes of
+    /// this triangle and another one. The way leads over the edge of the wedge, or along the normal
+    /// of the other triangle. `None` unless each triangle is behind the other one, and the edge is
+    /// sharp.
     pub(super) fn contact_of_wedge(
         &self,
         other: [Vec3; 3],
@@ -285,8 +290,9 @@ impl TrianglePartPair<'_> {
         f64::from(self.part.shape.radius())
     }
 
-    /// Returns the contact of a wall with its own normal, if the part stands at its foot. `floor` is the contact of the
-    /// triangle at the foot, with the corners `of_floor`. Once it has lifted the part, the part touches the wall.
+    /// Returns the contact of a wall with its own normal, if the part stands at its foot. `floor`
+    /// is the contact of the triangle at the foot, with the corners `of_floor`. Once it has lifted
+    /// the part, the part touches the wall.
     pub(super) fn wall_contact(
         &self,
         floor: &ConvexContact,
@@ -310,7 +316,8 @@ impl TrianglePartPair<'_> {
         is_over(corners, lifted, OVER_SLACK).then_some(wall)
     }
 
-    /// Returns the contact of the part with the plane of the triangle, on the side of the part's middle.
+    /// Returns the contact of the part with the plane of the triangle, on the side of the part's
+    /// middle.
     fn face_contact(&self, corners @ [a, ..]: &[DVec3; 3]) -> Option<ConvexContact> {
         let Self { placed: PlacedPart { extent, .. }, part: Part { shape, .. }, .. } = *self;
         let normal = area_vector(corners).try_normalize()?;
@@ -350,14 +357,15 @@ fn outward(corners @ [a, ..]: &[DVec3; 3], other: &[DVec3; 3]) -> Option<DVec3> 
     other.iter().all(is_behind).then_some(normal)
 }
 
-/// Returns a triangle that halves a wedge and ends at its edge. It reaches beyond a ball. `points` are on the sides with
-/// these normals. `None` if both push the [same way](SAME_PUSH).
+/// Returns a triangle that halves a wedge and ends at its edge. It reaches beyond a ball. `points`
+/// are on the sides with these normals. `None` if both push the [same way](SAME_PUSH).
 fn within_edge(
     ball: &Sphere,
     normals @ [one, other]: [DVec3; 2],
     points: [DVec3; 2],
 ) -> Option<[DVec3; 3]> {
-    /// Radii of the ball up to which the triangle reaches. Higher: less exact. Lower: shapes pass its ends.
+    /// Radii of the ball up to which the triangle reaches. Higher: less exact. Lower: shapes pass
+    /// its ends.
     const WEDGE_REACH: f64 = 8.0;
     if one.dot(other) >= SAME_PUSH {
         return None;

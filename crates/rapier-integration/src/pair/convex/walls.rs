@@ -1,5 +1,5 @@
-//! Removes contacts with walls that are not in the way of a convex shape. These are walls within the mesh, walls behind an edge, and walls
-//! over which one way lifts the shape.
+//! Removes contacts with walls that are not in the way of a convex shape. These are walls within
+//! the mesh, walls behind an edge, and walls over which one way lifts the shape.
 
 use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
@@ -15,18 +15,20 @@ use crate::pair::ways::{
     RESTING_DEPTH, SAME_DIRECTION, SAME_SIDE, Ways, equal_height, greatest_overlap,
 };
 
-/// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher: bodies catch on walls behind
-/// the edge that they slide over. Lower: rounding decides about contacts along the surface.
+/// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher:
+/// bodies catch on walls behind the edge that they slide over. Lower: rounding decides about
+/// contacts along the surface.
 const TANGENTIAL: f64 = 1.0e-4;
 
-/// Two distances count as equal if they differ by less than this share. Higher: contacts apart are lost. Lower: bodies catch on
-/// the foot of a step or chamfer that they slide over.
+/// Two distances count as equal if they differ by less than this share. Higher: contacts apart are
+/// lost. Lower: bodies catch on the foot of a step or chamfer that they slide over.
 const AT_ONE_PLACE: f64 = 1.0e-6;
 
 impl ConvexQuery<'_> {
-    /// Removes the contacts of triangles that have the body on both sides, those that lead into the body, and those behind these. Asks
-    /// for sides only where contacts push in different directions. Parts whose middle is in a solid keep all contacts: the
-    /// solid is a room, and the triangles are of what stands there.
+    /// Removes the contacts of triangles that have the body on both sides, those that lead into the
+    /// body, and those behind these. Asks for sides only where contacts push in different
+    /// directions. Parts whose middle is in a solid keep all contacts: the solid is a room, and the
+    /// triangles are of what stands there.
     pub(super) fn drop_walls(
         &self,
         contacts: &mut ContactList<PartContact>,
@@ -56,8 +58,8 @@ impl ConvexQuery<'_> {
         normals.next().is_some_and(|first| normals.any(|normal| first.dot(normal) < cosine))
     }
 
-    /// Finds contacts of walls within the body, and contacts that lead into the body. Crossing triangles keep contacts that lead in
-    /// unless another one leads out.
+    /// Finds contacts of walls within the body, and contacts that lead into the body. Crossing
+    /// triangles keep contacts that lead in unless another one leads out.
     fn find_walls(
         &self,
         surface: &LazySurface<'_>,
@@ -82,8 +84,8 @@ impl ConvexQuery<'_> {
         }));
     }
 
-    /// Finds contacts apart that are behind the triangle of a removed contact: at their points, that triangle is nearer than
-    /// `near` times their distance.
+    /// Finds contacts apart that are behind the triangle of a removed contact: at their points,
+    /// that triangle is nearer than `near` times their distance.
     fn find_behind(
         &self,
         contacts: &[Hit],
@@ -154,8 +156,9 @@ impl ConvexQuery<'_> {
         is_within.flatten() == Some(true)
     }
 
-    /// Marks contacts that push aside, if one [way](crate::pair::ways) leads a part out of all triangles. Also marks contacts
-    /// apart over whose triangles the way lifts the part, and contacts behind them.
+    /// Marks contacts that push aside, if one [way](crate::pair::ways) leads a part out of all
+    /// triangles. Also marks contacts apart over whose triangles the way lifts the part, and
+    /// contacts behind them.
     pub(super) fn find_lifted(
         &self,
         contacts: &[Hit],
@@ -184,7 +187,8 @@ impl ConvexQuery<'_> {
         self.find_behind(contacts, 1.0 + AT_ONE_PLACE, at_hand, dropped);
     }
 
-    /// Finds the ways that part each part from all triangles that it crosses. Contacts that hardly hover know ways, too.
+    /// Finds the ways that part each part from all triangles that it crosses. Contacts that hardly
+    /// hover know ways, too.
     fn find_ways(
         &self,
         surface: &LazySurface<'_>,
@@ -226,7 +230,8 @@ impl ConvexQuery<'_> {
         filter_unit(self.pair.pose, self.filter_distance())
     }
 
-    /// Returns true if a triangle, and the surface, end near the lowest point of a contact along a way. The way then parts both.
+    /// Returns true if a triangle, and the surface, end near the lowest point of a contact along a
+    /// way. The way then parts both.
     fn is_parted(
         &self,
         surface: &LazySurface<'_>,

@@ -1,7 +1,7 @@
 //! Ways that part all pairs of an island.
 //!
-//! Two crossing triangles know the ways across their own faces and edges. A contact of another pair may part them as well, if both
-//! surfaces end where the overlap along its way does.
+//! Two crossing triangles know the ways across their own faces and edges. A contact of another pair
+//! may part them as well, if both surfaces end where the overlap along its way does.
 
 use glamx::DVec3;
 
@@ -24,7 +24,8 @@ impl OverlapIslands {
         }
     }
 
-    /// Rejects contacts that push aside where one way parts all pairs of the island at a `small` depth.
+    /// Rejects contacts that push aside where one way parts all pairs of the island at a `small`
+    /// depth.
     pub(super) fn keep_one_way(
         &mut self,
         small: f64,

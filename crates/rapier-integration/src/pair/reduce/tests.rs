@@ -22,7 +22,8 @@ fn summary(x: Real, distance: Real) -> ContactSummary {
     ContactSummary { part: 0, normal: Vec3::Y, point, distance, spread: 0.0 }
 }
 
-/// Would catch patches that mix parts, directions or places. A contact that carries must not be replaced by one that hovers.
+/// Would catch patches that mix parts, directions or places. A contact that carries must not be
+/// replaced by one that hovers.
 #[test]
 fn contacts_join_the_patch_of_their_part_direction_and_place() {
     let row = [0.0, 2.0, 4.0, 4.5, 6.0, 8.0].map(|x| summary(x, -0.1));

@@ -13,8 +13,8 @@ use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
 use crate::pair::ways::{ALIKE, RESTING_DEPTH, SAME_DIRECTION, greatest_overlap};
 
-/// Least number of crossings of a chunk. Higher: threads wait for each other; lower: threads take turns for chunks of
-/// a few microseconds.
+/// Least number of crossings of a chunk. Higher: threads wait for each other; lower: threads take
+/// turns for chunks of a few microseconds.
 const LEAST_CROSSINGS: usize = 64;
 
 impl<T: Send> ChunkResult for ContactList<T> {
@@ -52,7 +52,8 @@ impl TriangleQuery<'_> {
         keep_deepest(contacts);
     }
 
-    /// Returns the contact of a crossing pair: along the way out of its island, or else the extremal one.
+    /// Returns the contact of a crossing pair: along the way out of its island, or else the
+    /// extremal one.
     fn of_crossing(
         &self,
         crossing: &mut Crossing,
@@ -85,7 +86,8 @@ impl TriangleQuery<'_> {
         islands.settle_one_ways(small, is_parted)
     }
 
-    /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at the height of the overlap.
+    /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at
+    /// the height of the overlap.
     pub(super) fn drop_lifted(
         &self,
         ways: &[(DVec3, f64)],
@@ -99,7 +101,8 @@ impl TriangleQuery<'_> {
         });
     }
 
-    /// Adds the contacts of crossing triangles if all contacts are apart, as these do not part the triangles.
+    /// Adds the contacts of crossing triangles if all contacts are apart, as these do not part the
+    /// triangles.
     pub(super) fn add_if_all_apart(
         &self,
         islands: &OverlapIslands,
@@ -138,7 +141,8 @@ impl TriangleQuery<'_> {
         Some(highest - lowest)
     }
 
-    /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too few.
+    /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too
+    /// few.
     #[inline(never)]
     pub(super) fn second_pass(
         &self,
@@ -163,7 +167,8 @@ impl TriangleQuery<'_> {
     }
 }
 
-/// Sorts contacts by pair, and keeps the deepest of each pair. Points of a contour count if they are much deeper.
+/// Sorts contacts by pair, and keeps the deepest of each pair. Points of a contour count if they
+/// are much deeper.
 fn keep_deepest(contacts: &mut ContactList<TriangleSurfaceContact>) {
     let height = |(_, TriangleSurfaceContact { contact, source }): &TriangleHit| {
         contact.distance / if *source == ContactSource::PushOut { ALIKE } else { 1.0 }

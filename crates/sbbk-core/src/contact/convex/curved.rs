@@ -22,8 +22,8 @@ use super::{ConvexContact, by_search};
 use crate::contact::closest::within_edge;
 use glamx::DVec3;
 
-/// A cylinder or a cone around the y axis, its middle at the origin. The base of a cone is below, and
-/// its tip above.
+/// A cylinder or a cone around the y axis, its middle at the origin. The base of a cone is below,
+/// and its tip above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnedSupport<const IS_CONE: bool> {
     /// Half the length of the axis.
@@ -179,7 +179,8 @@ struct AcrossEdge {
 }
 
 impl AcrossEdge {
-    /// Returns true if the third corner is not below the edge. It is not below an edge that touches.
+    /// Returns true if the third corner is not below the edge. It is not below an edge that
+    /// touches.
     #[inline(always)]
     fn is_lowest(&self, x: f64, y: f64) -> bool {
         x * self.to_third[0] + y * self.to_third[1] >= -self.rounding
@@ -200,9 +201,9 @@ impl<const IS_CONE: bool> TurnedSupport<IS_CONE> {
         Slope { run, rise, reach: self.support(steepest).dot(steepest) }
     }
 
-    /// The rims: the height of each, and the upright sign of the normals of its surfaces with edges.
-    /// The sign also leads out of a flat end. Beside the base of a cone, normals can point up as far
-    /// as the normal of the slope.
+    /// The rims: the height of each, and the upright sign of the normals of its surfaces with
+    /// edges. The sign also leads out of a flat end. Beside the base of a cone, normals can point
+    /// up as far as the normal of the slope.
     fn rims(&self) -> [(f64, f64); 2] {
         let height = self.half_height;
         if IS_CONE { [(-height, -1.0), (-height, 1.0)] } else { [(height, 1.0), (-height, -1.0)] }

@@ -2,13 +2,13 @@
 //!
 //! The least translation that separates the bodies is along the normal of a face of the difference.
 //! Such faces belong to the faces of the hull, to both sides of the triangle, and to pairs of edges
-//! whose arcs of normals cross. The normals of an edge of the hull form an arc between the normals of
-//! its faces. The normals of an edge of the triangle form half of a great circle. So arcs cross if one
-//! face of the hull rises along the edge of the triangle and the other one falls.
+//! whose arcs of normals cross. The normals of an edge of the hull form an arc between the normals
+//! of its faces. The normals of an edge of the triangle form half of a great circle. So arcs cross
+//! if one face of the hull rises along the edge of the triangle and the other one falls.
 //!
-//! Few pairs of edges are tried. The plane of a pair is no nearer to a corner of the triangle than the
-//! nearer one of both faces of the hull. So both ends of the edge of the triangle must be below the
-//! nearer face by less than the least depth so far.
+//! Few pairs of edges are tried. The plane of a pair is no nearer to a corner of the triangle than
+//! the nearer one of both faces of the hull. So both ends of the edge of the triangle must be below
+//! the nearer face by less than the least depth so far.
 
 use super::hull_surface::{FACES, HullSurface, POINTS, ROUNDING};
 use super::lanes::{PlaneLanes, PointLanes, first_lane, splat};
@@ -277,8 +277,9 @@ impl HullFaces {
     }
 }
 
-/// Returns the outward product of a side of a triangle and an edge. `None` if they are nearly parallel, or if the rest of the
-/// triangle is on the inner side. `falls_first`: the side falls below the first face of the edge, not the second.
+/// Returns the outward product of a side of a triangle and an edge. `None` if they are nearly
+/// parallel, or if the rest of the triangle is on the inner side. `falls_first`: the side falls
+/// below the first face of the edge, not the second.
 #[inline(always)]
 fn face_of_edges(sides: &[DVec3; 3], j: usize, along: DVec3, falls_first: bool) -> Option<DVec3> {
     let side = sides[j];
@@ -292,8 +293,8 @@ fn face_of_edges(sides: &[DVec3; 3], j: usize, along: DVec3, falls_first: bool) 
 /// Depth of each corner of a triangle below each face.
 type Depths = ArrayVec<[f64x4; 3], { FACES / 4 }>;
 
-/// Marks of each face, as bits. The low three tell along which sides of the triangle the face rises.
-/// The next three are set if a corner is less than `most` below the face.
+/// Marks of each face, as bits. The low three tell along which sides of the triangle the face
+/// rises. The next three are set if a corner is less than `most` below the face.
 #[inline(always)]
 fn marks(depths: &Depths, most: f64) -> [u8; FACES] {
     let mut marks = [0; FACES];

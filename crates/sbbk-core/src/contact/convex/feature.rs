@@ -14,13 +14,13 @@ const NONE: f64 = 1.0e-4;
 /// Least weight of a corner that counts as all.
 const MOST: f64 = 1.0 - NONE;
 
-/// Greatest sine of the first corner of a triangle that counts as a segment. Higher: faces of needles count as edges. Lower:
-/// rounding decides.
+/// Greatest sine of the first corner of a triangle that counts as a segment. Higher: faces of
+/// needles count as edges. Lower: rounding decides.
 const FLAT: f64 = 1.0e-12;
 
 /// The feature of a triangle at a contact point, given the unit normal of the contact. This is the
-/// face if the normal is the triangle's, otherwise the edge or corner at the point. A triangle without an area is its
-/// longest edge.
+/// face if the normal is the triangle's, otherwise the edge or corner at the point. A triangle
+/// without an area is its longest edge.
 pub fn feature_at(triangle: &[DVec3; 3], point: DVec3, normal: DVec3) -> Feature {
     let [a, b, c] = *triangle;
     let (ab, ac) = (b - a, c - a);

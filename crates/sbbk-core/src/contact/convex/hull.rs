@@ -35,15 +35,16 @@ impl HullPoints {
         Self::with_faces(points, [])
     }
 
-    /// Builds a hull whose depths are always found by search. Faces take longer than the search for a
-    /// few triangles.
+    /// Builds a hull whose depths are always found by search. Faces take longer than the search for
+    /// a few triangles.
     pub fn without_faces(points: impl IntoIterator<Item = Vec3>) -> Self {
         Self { faces: OnceLock::from(None), ..Self::new(points) }
     }
 
     /// Builds the hull with its probable faces: triangles of point indices, counterclockwise from
-    /// outside. They are checked, and mended where rounding makes them concave, when a triangle first
-    /// crosses the hull. Good faces save three quarters of the time to build the hull's surface.
+    /// outside. They are checked, and mended where rounding makes them concave, when a triangle
+    /// first crosses the hull. Good faces save three quarters of the time to build the hull's
+    /// surface.
     pub fn with_faces(
         points: impl IntoIterator<Item = Vec3>,
         triangles: impl IntoIterator<Item = [u32; 3]>,

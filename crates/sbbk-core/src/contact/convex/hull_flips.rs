@@ -1,7 +1,8 @@
 //! Makes a nearly convex surface convex.
 //!
-//! A host that computes in f32 splits nearly flat faces of a hull in any way, and leaves out points on them. Flips of concave
-//! edges make such faces convex, as all of their corners are corners of the hull.
+//! A host that computes in f32 splits nearly flat faces of a hull in any way, and leaves out points
+//! on them. Flips of concave edges make such faces convex, as all of their corners are corners of
+//! the hull.
 
 use super::hull_surface::{HullSurface, plane};
 use crate::contact::triangle::NEXT;
@@ -11,8 +12,8 @@ use glamx::DVec3;
 const PASSES: usize = 8;
 
 impl HullSurface {
-    /// Flips edges until no triangle rises above the plane of a neighbour by more than `slack`. `None` if flips do
-    /// not get there.
+    /// Flips edges until no triangle rises above the plane of a neighbour by more than `slack`.
+    /// `None` if flips do not get there.
     pub fn flip_until_convex(&mut self, slack: f64) -> Option<()> {
         for _ in 0..PASSES {
             let mut is_convex = true;
@@ -31,7 +32,8 @@ impl HullSurface {
         None
     }
 
-    /// Adds a point if it is outside of the convex surface by more than `slack`. `None` if it is far outside.
+    /// Adds a point if it is outside of the convex surface by more than `slack`. `None` if it is
+    /// far outside.
     pub fn include(&mut self, point: DVec3, slack: f64) -> Option<()> {
         let rise = |(normal, height): &(DVec3, f64)| point.dot(*normal) - height;
         let rises = (0..).zip(self.planes.iter().map(rise));
@@ -117,7 +119,8 @@ mod tests {
     use crate::support::Random;
     use std::f64::consts::TAU;
 
-    /// A prism with two fans of triangles as ends. Its corners, and the middles of both ends, are off by up to `noise`.
+    /// A prism with two fans of triangles as ends. Its corners, and the middles of both ends, are
+    /// off by up to `noise`.
     fn prism(sides: u32, noise: f64, random: &mut Random) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let at = |i: u32| {
             let (sin, cos) = (TAU * f64::from(i / 2) / f64::from(sides)).sin_cos();

@@ -31,8 +31,8 @@ pub(super) struct HullSurface {
 }
 
 impl HullSurface {
-    /// Builds the surface from the probable faces of the hull of some points. `None` if they are no closed
-    /// surface, counterclockwise from outside, or too far from convex.
+    /// Builds the surface from the probable faces of the hull of some points. `None` if they are no
+    /// closed surface, counterclockwise from outside, or too far from convex.
     ///
     /// A surface without concave edges whose face count excludes handles is convex everywhere.
     pub fn from_triangles(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
@@ -89,7 +89,8 @@ impl HullSurface {
     }
 }
 
-/// The normal of a face of a hull, and how far the face reaches along it. `None` if rounding would determine the normal.
+/// The normal of a face of a hull, and how far the face reaches along it. `None` if rounding would
+/// determine the normal.
 pub(super) fn plane(corners: &[DVec3; 3]) -> Option<(DVec3, f64)> {
     let (normal, squared) = thin_normal(*corners)?;
     let normal = normal / squared.sqrt();
@@ -97,8 +98,8 @@ pub(super) fn plane(corners: &[DVec3; 3]) -> Option<(DVec3, f64)> {
     Some((normal, a.max(b).max(c)))
 }
 
-/// Returns the triangle across each edge, and the points without triangles. `None` if triangles share a directed edge, have a
-/// border, or are not as many as a closed surface has.
+/// Returns the triangle across each edge, and the points without triangles. `None` if triangles
+/// share a directed edge, have a border, or are not as many as a closed surface has.
 fn neighbors_of(
     count: usize,
     triangles: &[[u32; 3]],

@@ -17,12 +17,13 @@
 //!
 //! # How
 //!
-//! Balls, capsules, boxes, cylinders and cones have closed forms. For bodies apart these are nearest
-//! points of features (`segment.rs`, `solid.rs`). For bodies that cross they are the least depth
-//! among the parts of the surface of the Minkowski difference (`segment.rs`, `cuboid.rs`,
-//! `curved.rs`). Triangles use the contact of [two triangles](mod@crate::contact). Hulls of up to 128
-//! points that cross have a closed form by faces and edges (`faces.rs`, `hull_surface.rs`). Other
-//! shapes, and poses in which rounding determines the features, use a search by support points:
+//! Balls, capsules, boxes, cylinders and cones have closed forms. For bodies apart these are
+//! nearest points of features (`segment.rs`, `solid.rs`). For bodies that cross they are the least
+//! depth among the parts of the surface of the Minkowski difference (`segment.rs`, `cuboid.rs`,
+//! `curved.rs`). Triangles use the contact of [two triangles](mod@crate::contact). Hulls of up to
+//! 128 points that cross have a closed form by faces and edges (`faces.rs`, `hull_surface.rs`).
+//! Other shapes, and poses in which rounding determines the features, use a search by support
+//! points:
 //!
 //! 1. A simplex of the Minkowski difference approaches the origin until a support plane proves its
 //!    nearest point, or proves the shape beyond the margin (`search.rs`). The first simplex is the
@@ -106,16 +107,16 @@ impl ConvexContact {
     }
 }
 
-/// Returns the contact of a triangle with a convex shape at a distance of at most `margin`. Crossing
-/// bodies have a negative distance.
+/// Returns the contact of a triangle with a convex shape at a distance of at most `margin`.
+/// Crossing bodies have a negative distance.
 ///
 /// The corners are in the shape's frame, whose origin should be in or near the shape, as the search
 /// starts toward it. The triangle may be a segment or a point, and the shape may be flat. Returns
 /// `None` if a coordinate is not finite. Coordinates and their differences between 1e-38 and 1e38
 /// are safe from overflow.
 ///
-/// Takes about 100 ns for a ball, capsule, triangle or cuboid, 300 for a cylinder or cone, 400 for a
-/// small hull. Crossing cylinders and cones take 1 µs, other support maps 2 µs or more.
+/// Takes about 100 ns for a ball, capsule, triangle or cuboid, 300 for a cylinder or cone, 400 for
+/// a small hull. Crossing cylinders and cones take 1 µs, other support maps 2 µs or more.
 pub fn convex_contact<S: SupportMap>(
     triangle: &[DVec3; 3],
     shape: &S,
@@ -162,8 +163,9 @@ pub fn convex_touches<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, reach: f6
         }
 }
 
-/// Least distance or depth for closed forms, as a share of the size of the bodies. Below it rounding
-/// determines the features. Higher: more contacts take the search. Lower: closed forms lose digits.
+/// Least distance or depth for closed forms, as a share of the size of the bodies. Below it
+/// rounding determines the features. Higher: more contacts take the search. Lower: closed forms
+/// lose digits.
 const DOUBTFUL: f64 = 1.0e-10;
 
 /// The contact by support points alone; `None` if clearly farther than the margin.

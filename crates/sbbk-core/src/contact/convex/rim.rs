@@ -36,11 +36,12 @@ impl LevelEdge {
         ((radius * radius - beside) / self.squared).sqrt()
     }
 
-    /// The place nearest to an endless slope, which comes `lean` nearer to the axis for each unit up. `up` is the height of
-    /// the edge.
+    /// The place nearest to an endless slope, which comes `lean` nearer to the axis for each unit
+    /// up. `up` is the height of the edge.
     ///
-    /// Across the slope the distance varies with `√(a² + l² t²) + lean y t`. The edge has the level length `l` and the height
-    /// `y`. It is nearest to the axis at `t = 0`, at distance `a`. The minimum is at `l² t = -lean y √(a² + l² t²)`. Steeper edges have none.
+    /// Across the slope the distance varies with `√(a² + l² t²) + lean y t`. The edge has the level
+    /// length `l` and the height `y`. It is nearest to the axis at `t = 0`, at distance `a`. The
+    /// minimum is at `l² t = -lean y √(a² + l² t²)`. Steeper edges have none.
     #[inline(always)]
     pub(super) fn near_slope(&self, up: f64, lean: f64) -> f64 {
         let fall = -lean * up;

@@ -135,7 +135,8 @@ impl<'a, S: SupportMap> Search<'a, S> {
         Outcome::Apart(simplex)
     }
 
-    /// The nearer one of two simplices to start with; `None` if a plane proves the bodies far apart.
+    /// The nearer one of two simplices to start with; `None` if a plane proves the bodies far
+    /// apart.
     #[inline(always)]
     fn first(&self, is_far: impl Fn(f64, f64) -> bool) -> Option<Simplex> {
         let Self { difference, toward, start, .. } = self;

@@ -18,8 +18,8 @@ impl SupportMap for PointSupport {
         self.0
     }
 
-    /// A point on the triangle is parted from it along the triangle's normal, on whose side it counts
-    /// as being.
+    /// A point on the triangle is parted from it along the triangle's normal, on whose side it
+    /// counts as being.
     #[inline(always)]
     fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
         let point = self.0;
@@ -54,9 +54,9 @@ impl SupportMap for SegmentSupport {
         if (b - a).dot(direction) > 0.0 { b } else { a }
     }
 
-    /// The distance from the triangle is a convex function along the segment. If it rises from an end
-    /// on, that end is nearest. Otherwise the nearest point is between the ends and near an edge, or
-    /// the segment crosses.
+    /// The distance from the triangle is a convex function along the segment. If it rises from an
+    /// end on, that end is nearest. Otherwise the nearest point is between the ends and near an
+    /// edge, or the segment crosses.
     fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
         let [p, q] = self.0;
         let along = q - p;

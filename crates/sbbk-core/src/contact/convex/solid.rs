@@ -31,15 +31,16 @@ pub(super) trait Solid: SupportMap {
     /// The way from the shape to a point; zero inside.
     fn outside(&self, point: DVec3) -> DVec3;
 
-    /// Places along an edge, as shares of the edge; any numbers. Near them the edge is nearest, or passes to another part of
-    /// the surface.
+    /// Places along an edge, as shares of the edge; any numbers. Near them the edge is nearest, or
+    /// passes to another part of the surface.
     #[inline(always)]
     fn breaks(&self, _start: DVec3, _edge: DVec3) -> [f64; 5] {
         [f64::NAN; 5]
     }
 
-    /// The point of an edge that is nearest, or one that is within `touching`. Any point of the edge if none is nearer than
-    /// the square root of `least`. The slope of the squared distance rises along the edge.
+    /// The point of an edge that is nearest, or one that is within `touching`. Any point of the
+    /// edge if none is nearer than the square root of `least`. The slope of the squared distance
+    /// rises along the edge.
     #[inline(always)]
     fn near_edge(&self, start: DVec3, edge: DVec3, touching: f64, least: f64) -> OffsetPoint {
         let rounding = ROUNDING * touching * edge.length();
@@ -93,8 +94,9 @@ struct EdgePoint {
 }
 
 impl EdgePoint {
-    /// Returns the place of the next step between two points, in turns by the distance and by its square: one has a smooth
-    /// minimum. A step halves the part of the edge if three have not made it shorter than `most`.
+    /// Returns the place of the next step between two points, in turns by the distance and by its
+    /// square: one has a smooth minimum. A step halves the part of the edge if three have not made
+    /// it shorter than `most`.
     #[inline(always)]
     fn step(&self, high: &Self, step: u32, most: f64) -> f64 {
         if step.is_multiple_of(3) && high.t - self.t > most {
@@ -106,8 +108,8 @@ impl EdgePoint {
         }
     }
 
-    /// Returns a lower bound of the squared distance between two points. The distance is convex: it is above both
-    /// tangents.
+    /// Returns a lower bound of the squared distance between two points. The distance is convex: it
+    /// is above both tangents.
     #[inline(always)]
     fn bound(&self, high: &Self) -> f64 {
         let [fall, rise] = [-self.slope, high.slope];
@@ -129,7 +131,8 @@ impl EdgePoint {
     }
 }
 
-/// Returns the place of the minimum of a cubic function between two places, with values that fall and rise there.
+/// Returns the place of the minimum of a cubic function between two places, with values that fall
+/// and rise there.
 #[inline(always)]
 fn minimum([low, at_low, fall]: [f64; 3], [high, at_high, rise]: [f64; 3]) -> f64 {
     let mean = rise + fall - 3.0 * (at_high - at_low) / (high - low);

@@ -1,4 +1,5 @@
-//! Support maps: all that a search needs to know of a convex shape, and of its Minkowski difference with a triangle.
+//! Support maps: all that a search needs to know of a convex shape, and of its Minkowski difference
+//! with a triangle.
 
 use super::{ConvexContact, by_search};
 use crate::contact::contact as triangle_contact;
@@ -79,9 +80,9 @@ pub(super) fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> usize {
     if c < least { 2 } else { i }
 }
 
-/// The Minkowski difference of a convex shape and a triangle: the points `s - t` of points `s` of the shape and `t` of the
-/// triangle. The bodies cross where the difference holds the origin. If they are apart, the point nearest to the origin
-/// leads from one to the other.
+/// The Minkowski difference of a convex shape and a triangle: the points `s - t` of points `s` of
+/// the shape and `t` of the triangle. The bodies cross where the difference holds the origin. If
+/// they are apart, the point nearest to the origin leads from one to the other.
 pub(super) struct Difference<'a, S> {
     pub triangle: &'a [DVec3; 3],
     pub shape: &'a S,

@@ -5,8 +5,8 @@ use super::shape::{Kind, Shape};
 use super::truth::{check, gap, size};
 use crate::prelude::*;
 
-/// The widest gap in a search over directions: a lower bound, exact for bodies that cross unless the
-/// search ends in a local maximum.
+/// The widest gap in a search over directions: a lower bound, exact for bodies that cross unless
+/// the search ends in a local maximum.
 fn separation(triangle: &[DVec3; 3], shape: &Shape, rng: &mut Random) -> f64 {
     let [a, b, c] = *triangle;
     let face = (b - a).cross(c - a);

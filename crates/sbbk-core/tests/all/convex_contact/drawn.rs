@@ -20,8 +20,8 @@ fn point<E>(draw: Draw<E>) -> Result<DVec3, E> {
     Ok(grid + if power == 0 { DVec3::ZERO } else { nudge * 0.5_f64.powi(power as i32) })
 }
 
-/// Checks the contact of a triangle and a shape: points, segments, triangles, boxes and hulls by the
-/// truth, cylinders and cones by the search.
+/// Checks the contact of a triangle and a shape: points, segments, triangles, boxes and hulls by
+/// the truth, cylinders and cones by the search.
 pub fn check_drawn<E>(draw: Draw<E>) -> Result<(), E> {
     let triangle = [point(draw)?, point(draw)?, point(draw)?];
     let mut length = || draw(17).map(|x| x as f64 / 8.0);
@@ -54,8 +54,8 @@ pub fn check_drawn<E>(draw: Draw<E>) -> Result<(), E> {
         assert!(is_no_deeper, "{searched:?} {}", says());
     } else {
         check(&triangle, &shape, &contact, 1.0e-9 * size + open(&triangle, &shape, size));
-        // No farther: the check has proved the rest, even of a point on a segment, where brute force
-        // finds no axis.
+        // No farther: the check has proved the rest, even of a point on a segment, where brute
+        // force finds no axis.
         let truth = shape.truth().distance(&triangle);
         assert!(truth - contact.distance <= 1.0e-9 * size, "{truth} {}", says());
     }

@@ -31,8 +31,8 @@ fn hills(random: &mut Random) -> Case {
     (grid, mesh, random.pose(2.0), [0.0, 0.02, 0.3][random.bits() as usize % 3])
 }
 
-/// Corners on corners, edges on edges, faces in one plane, boxes that end on a grid line, degenerate
-/// triangles.
+/// Corners on corners, edges on edges, faces in one plane, boxes that end on a grid line,
+/// degenerate triangles.
 fn lattices(random: &mut Random) -> Case {
     let (grid, mesh) = (Grid::lattice(random, [10, 8]), lattice_soup(random, 20, 3));
     let turn = Quat::from_rotation_y(FRAC_PI_2 * (random.bits() % 4) as f32);
@@ -43,8 +43,8 @@ fn lattices(random: &mut Random) -> Case {
     (grid, mesh, Pose3::from_parts(at, turn), [0.0, 1.0, 0.5][random.bits() as usize % 3])
 }
 
-/// From a ten-thousandth to a million units; the mesh may be far from the middle of the field, where
-/// corners in f32 are rough.
+/// From a ten-thousandth to a million units; the mesh may be far from the middle of the field,
+/// where corners in f32 are rough.
 fn huge_and_tiny(random: &mut Random) -> Case {
     let size = [1e-4, 1e-2, 1.0, 1e3, 1e6][random.bits() as usize % 5];
     let spread = [1.0, 30.0][random.bits() as usize % 2];

@@ -20,7 +20,8 @@ fn before(half_edge: usize) -> usize {
     3 * (half_edge / 3) + (half_edge + 2) % 3
 }
 
-/// True if an earlier triangle has the same corners, or if others have the sides of one without an area.
+/// True if an earlier triangle has the same corners, or if others have the sides of one without an
+/// area.
 fn is_double(mesh: &Soup, triangle: usize) -> bool {
     is_repeated(mesh, triangle) || is_sliver(mesh, triangle)
 }
@@ -77,7 +78,8 @@ fn is_repeated(mesh: &Soup, triangle: usize) -> bool {
 }
 
 /// The twin of each half-edge by definition: the only half-edge from its end to its start, if no
-/// other runs from start to end. Doubles with the corners of others and hanging slivers do not count.
+/// other runs from start to end. Doubles with the corners of others and hanging slivers do not
+/// count.
 fn brute_twins(mesh: &Soup) -> Vec<Option<u32>> {
     let count = 3 * mesh.triangles.len();
     let is_left_out = |triangle| is_repeated(mesh, triangle) || hangs(mesh, triangle);
@@ -300,8 +302,8 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
     assert!(seen.iter().all(|&count| count > 10_000), "{seen:?}");
 }
 
-/// Corners of tetrahedra are acute, and their triangles unlike in size. Would catch a corner that seems to lead into the solid
-/// as one large triangle there faces away.
+/// Corners of tetrahedra are acute, and their triangles unlike in size. Would catch a corner that
+/// seems to lead into the solid as one large triangle there faces away.
 #[test]
 fn the_farthest_corners_and_edges_of_tetrahedra_are_minima() {
     let mut random = Random(43);

@@ -47,8 +47,8 @@ pub struct Advice {
     wants_trees: bool,
 }
 
-/// Measures whole worlds with a subject for so many steps. `length_unit` and gravity have the size of
-/// the bodies.
+/// Measures whole worlds with a subject for so many steps. `length_unit` and gravity have the size
+/// of the bodies.
 pub fn advise(subject: &Subject, steps: usize, progress: &Progress) -> Advice {
     let bounds = subject.bounds(&Pose3::IDENTITY);
     let size = bounds.extents().max_element();

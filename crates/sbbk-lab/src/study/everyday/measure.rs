@@ -1,4 +1,5 @@
-//! Runs of a scene under stock Rapier and under SBBK, in turns. Brute force in f64 judges contacts of both.
+//! Runs of a scene under stock Rapier and under SBBK, in turns. Brute force in f64 judges contacts
+//! of both.
 
 use crate::prelude::*;
 use rapier_integration::{PreparedTree, SbbkDispatcher};
@@ -222,8 +223,8 @@ impl Comparison {
     }
 }
 
-/// Returns a pair at its pose in a world. `None` without a mesh, and with `FIX_INTERNAL_EDGES`: that
-/// flag changes the contacts of triangles.
+/// Returns a pair at its pose in a world. `None` without a mesh, and with `FIX_INTERNAL_EDGES`:
+/// that flag changes the contacts of triangles.
 fn plain_pair(world: &PhysicsWorld, pair: [ColliderHandle; 2]) -> Option<Sequence> {
     let pair = Sequence::of(world, pair);
     let mut meshes = pair.shapes.iter().filter_map(|shape| shape.as_trimesh()).peekable();

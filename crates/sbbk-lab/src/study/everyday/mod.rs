@@ -1,9 +1,9 @@
 //! Everyday scenes: bodies on mesh terrains of all sizes, meshes that come and go, robots, sensors,
 //! characters, and queries without a workspace.
 //!
-//! Each scene runs in whole worlds, under stock Rapier and under SBBK with its defaults, step by step
-//! in turns. All runs of a backend do the same, so the time of a step is the least over the runs.
-//! Brute force in f64 judges contacts of both at poses of stock's run.
+//! Each scene runs in whole worlds, under stock Rapier and under SBBK with its defaults, step by
+//! step in turns. All runs of a backend do the same, so the time of a step is the least over the
+//! runs. Brute force in f64 judges contacts of both at poses of stock's run.
 
 use crate::prelude::*;
 

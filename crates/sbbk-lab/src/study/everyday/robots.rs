@@ -1,4 +1,5 @@
-//! Robots from a URDF file, loaded by Rapier's own loader, and what advice is about: a mesh or a robot.
+//! Robots from a URDF file, loaded by Rapier's own loader, and what advice is about: a mesh or a
+//! robot.
 
 use crate::prelude::*;
 use std::f32::consts::{FRAC_PI_2, TAU};

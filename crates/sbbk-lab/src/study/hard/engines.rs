@@ -1,5 +1,5 @@
-//! The pile of heads in several engines, each a program of its own. All read the same file and write
-//! one file of a run; one judge reads these.
+//! The pile of heads in several engines, each a program of its own. All read the same file and
+//! write one file of a run; one judge reads these.
 
 use crate::prelude::*;
 use std::collections::BTreeMap;

@@ -100,8 +100,8 @@ fn pit(kit: &Kit, size: f32) -> Figures {
         .note("highest", f64::from(largest(ends.iter().map(|end| end.y))) / size)
 }
 
-/// Returns a square tray with walls all round, from half its diagonals inside and outside. `rim` is the height of
-/// the walls over the bottom, and `bottom` its thickness.
+/// Returns a square tray with walls all round, from half its diagonals inside and outside. `rim` is
+/// the height of the walls over the bottom, and `bottom` its thickness.
 pub(super) fn open_box([half, outside]: [f32; 2], rim: f32, bottom: f32) -> Mesh {
     let profile =
         [[0.0, -bottom], [outside, -bottom], [outside, rim], [half, rim], [half, 0.0], [0.0; 2]];

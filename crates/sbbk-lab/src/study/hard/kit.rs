@@ -189,8 +189,8 @@ impl World {
         (0..steps).for_each(|_| self.step());
     }
 
-    /// Steps the world and measures the steps after number `full`. Calls `seen` after each step with
-    /// its number, from one.
+    /// Steps the world and measures the steps after number `full`. Calls `seen` after each step
+    /// with its number, from one.
     pub fn watch(
         &mut self,
         steps: usize,

@@ -1,7 +1,7 @@
 //! A nut on a bolt, a gear that drives another one or a rack, and a worm that drives a gear.
 //!
-//! At 5 rad/s teeth move by four prediction distances in a step, so contacts of edges that only pass
-//! each other would brake.
+//! At 5 rad/s teeth move by four prediction distances in a step, so contacts of edges that only
+//! pass each other would brake.
 
 use rapier3d::dynamics::{GenericJoint, PrismaticJointBuilder, RevoluteJointBuilder};
 
@@ -196,8 +196,8 @@ fn worm(kit: &Kit, speed: f32) -> Figures {
     machine.ratio = GEAR.teeth as f32;
     // Its lead angle is 4.8 degrees: contact clustering takes normals within five for one.
     machine.world.integration_parameters.contact_clustering = false;
-    // The wheel is at the side at which the thread has three quarters of a turn behind it. There a gap
-    // is where the first tooth is.
+    // The wheel is at the side at which the thread has three quarters of a turn behind it. There a
+    // gap is where the first tooth is.
     let line = WORM.root + 1.25 * GEAR.module;
     let place = Vec3::new(GEAR.pitch_radius() + line, -2.75 * WORM.pitch, 0.0);
     let body = RigidBodyBuilder::dynamic().translation(place);

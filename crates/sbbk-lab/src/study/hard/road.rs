@@ -1,5 +1,5 @@
-//! Bodies that slide and roll over fine meshes, beside the same bodies on a cuboid. A mesh ball loses
-//! speed at its facets by chance, so several are started, each turned another way.
+//! Bodies that slide and roll over fine meshes, beside the same bodies on a cuboid. A mesh ball
+//! loses speed at its facets by chance, so several are started, each turned another way.
 
 use super::kit::*;
 

@@ -7,8 +7,8 @@ use crate::study::hard::heaps::open_box;
 use crate::study::hard::kit::*;
 use crate::study::hard::resting::ring;
 
-/// Greatest way by which corners of a soup are moved, in sizes: 0.05 mm at a metre. More opens gaps;
-/// less is a mesh whose corners are not joined.
+/// Greatest way by which corners of a soup are moved, in sizes: 0.05 mm at a metre. More opens
+/// gaps; less is a mesh whose corners are not joined.
 const SOUP: f32 = 0.5e-4;
 
 /// Thickness of the walls of trays, and of rooms in the control.
@@ -234,7 +234,8 @@ impl Draw {
         Part { form: Form { mesh, ..part.form }, is_primitive, ..part }
     }
 
-    /// The closed mesh as a soup, or with triangles twice. Both leave inside and outside as they are.
+    /// The closed mesh as a soup, or with triangles twice. Both leave inside and outside as they
+    /// are.
     pub fn flawed(&mut self, mesh: &Mesh) -> Mesh {
         let (seed, nth) = (self.seed(), self.count(1, 5) as usize);
         if self.chance(0.5) { mesh::unwelded(mesh, SOUP, seed) } else { mesh::doubled(mesh, nth) }

@@ -138,8 +138,8 @@ fn threads(draw: &mut Draw) -> [Thread; 2] {
     [bolt, Thread { root: bolt.root + 0.1 * pitch, thicker: 0.05, turns: 1, ..bolt }]
 }
 
-/// Runs the nut over 1.8 pitches, or for 2.5 seconds. It should run down with the acceleration `pull`, in sizes/s². A pull
-/// of 0 locks it.
+/// Runs the nut over 1.8 pitches, or for 2.5 seconds. It should run down with the acceleration
+/// `pull`, in sizes/s². A pull of 0 locks it.
 fn run_nut(stage: &mut Stage, pitch: f32, pull: f32) -> Figures {
     let draw = stage.draw;
     let seconds = (2.0 * 1.8 * pitch / pull.max(1e-6)).sqrt().min(2.5);
@@ -204,7 +204,8 @@ fn gripped(draw: &mut Draw, halves: Vec3) -> Part {
     }
 }
 
-/// A finger beside the part, which moves along `x` only and has between 0.3 and 3 times the mass of the part.
+/// A finger beside the part, which moves along `x` only and has between 0.3 and 3 times the mass of
+/// the part.
 fn finger(draw: &mut Draw, part: &Part, side: f32) -> Body {
     let halves = Vec3::new(0.15, draw.within(0.15, 0.5), draw.within(0.15, 0.5));
     let brick = draw.brick(halves);
@@ -217,7 +218,8 @@ fn finger(draw: &mut Draw, part: &Part, side: f32) -> Body {
     finger
 }
 
-/// Presses the fingers against the part for a second. The force grows at first, up to `press` times the mass of the part.
+/// Presses the fingers against the part for a second. The force grows at first, up to `press` times
+/// the mass of the part.
 fn close(stage: &mut Stage, press: f32) {
     let [one, other, part] = [0, 1, 2].map(|k| stage.handles[k]);
     let steps = stage.draw.steps(1.0);

@@ -137,8 +137,9 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> io::Result<Results> {
     Ok(Results { verdict: verdict(plan, &rows), notes, ..Results::new("random_scenes", rows) })
 }
 
-/// Counts of a family in a column: scenes, scenes that hold, and failures of SBBK. `lost` counts the failures that stock
-/// holds, with the flag or without. `shared` counts the failures in which the control fails, too.
+/// Counts of a family in a column: scenes, scenes that hold, and failures of SBBK. `lost` counts
+/// the failures that stock holds, with the flag or without. `shared` counts the failures in which
+/// the control fails, too.
 fn counted(family: &str, column: Column, runs: &[Run]) -> Row {
     let of: Vec<&Run> =
         runs.iter().filter(|run| run.group == family && run.column == column).collect();

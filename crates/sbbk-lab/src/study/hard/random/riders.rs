@@ -134,7 +134,8 @@ fn judged(
 ) -> Figures {
     let steps = draw.steps(seconds);
     let end = ride(draw, kit, frame, bodies, steps);
-    // A mesh ball hops, swerves and slows down at its facets by chance. So does its hull on a cuboid.
+    // A mesh ball hops, swerves and slows down at its facets by chance. So does its hull on a
+    // cuboid.
     let hull = || ride(draw, &Kit::new(Column::Control, None), frame, bodies, steps);
     let (expected, [hop, drift], share) = match rider.is_rough.then(hull) {
         Some(hull) => (hull.way.x, [hull.rise, hull.way.z.abs()], 0.1),

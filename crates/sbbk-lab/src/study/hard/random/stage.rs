@@ -6,8 +6,8 @@ use super::Options;
 use super::draw::{Draw, Part};
 use crate::study::hard::kit::*;
 
-/// Energy that a scene may gain, as a share: bodies may be lifted by Rapier's prediction distance and
-/// allowed error, in sizes. More lets bodies hop; less is what pushing out of an impact gains.
+/// Energy that a scene may gain, as a share: bodies may be lifted by Rapier's prediction distance
+/// and allowed error, in sizes. More lets bodies hop; less is what pushing out of an impact gains.
 const GAIN: f64 = 0.025;
 
 /// A body before the first step.
@@ -107,8 +107,8 @@ impl<'a> Stage<'a> {
         self.world.rise(self.draw.steps(seconds)) / f64::from(unit)
     }
 
-    /// Runs for the time of 20 falls from half a size. Energy must not grow, and all bodies must come
-    /// to rest.
+    /// Runs for the time of 20 falls from half a size. Energy must not grow, and all bodies must
+    /// come to rest.
     pub fn settle(&mut self) -> Figures {
         let root = self.draw.gravity.sqrt();
         let gain = self.gain(20.0 / root);
