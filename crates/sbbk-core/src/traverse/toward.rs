@@ -159,7 +159,7 @@ impl Toward {
         self.exact_offset + lowest1 + lowest2 >= self.distance
     }
 
-    /// Returns the least height of the triangles of a node.
+    /// Returns the least height of the triangles of a node; `None` if the allowance is used up.
     fn lowest(&mut self, side: usize, tree: &Tree, slot: Slot) -> Option<f64> {
         let link = tree.link(slot);
         if link.is_leaf() {
