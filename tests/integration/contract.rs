@@ -1,6 +1,8 @@
 use crate::prelude::*;
+use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::parry::query::ContactManifold;
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// Marks of manifolds and points tell which of them survive.
 type MarkedPair = Pair<u32, u32>;
@@ -143,4 +145,13 @@ fn manifolds_may_have_any_data() {
     assert_eq!(named.manifolds[0].data.0, "first");
     named.ask(&dispatcher, &query);
     assert_same(&named.manifolds, &expected, 1e-6);
+
+    // Rapier holds its dispatcher like this.
+    let shared: Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>> =
+        Arc::new(dispatcher);
+    let (mut manifolds, mut workspace) = (Vec::new(), None);
+    shared
+        .contact_manifolds(&query.pose, &one, &two, 0.02, &mut manifolds, &mut workspace)
+        .unwrap();
+    assert_same(&manifolds, &expected, 0.0);
 }
