@@ -1,5 +1,5 @@
-//! Plain Rapier with SBBK, beside stock Rapier and beside the right answer: a mesh box slides over
-//! a mesh floor, and mesh rings fall in a pile.
+//! Compares SBBK with stock Rapier and with the right answer. A mesh box slides over a mesh floor,
+//! and mesh rings fall in a pile.
 //!
 //! ```text
 //! cargo run --release -p rapier-integration --example quick_start

@@ -49,7 +49,6 @@
 //! type Answer<T> = Result<T, Unsupported>;
 //! type Motion = NonlinearRigidMotion;
 //!
-//! #[rustfmt::skip]
 //! impl QueryDispatcher for Ghosts {
 //!     fn intersection_test(&self, _: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Answer<ShapeIntersection> {
 //!         ghosts(g1, g2).map(|()| ShapeIntersection::new(false))

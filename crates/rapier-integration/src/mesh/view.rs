@@ -312,6 +312,10 @@ impl<'a> MeshView<'a> {
     /// normal there. A solid goes on while the ray is in one of its parts, which may overlap.
     /// `None` if the ray does not leave. See [`leaves`].
     pub(crate) fn exit(&self, ray: &Ray, outward: Option<f64>) -> Option<(Real, Vec3)> {
+        if outward.is_none() {
+            let (_, hit) = first_hit(self.mesh, ray, Real::MAX)?;
+            return Some((hit.time_of_impact, -hit.normal));
+        }
         // Rounding parts the triangles at an edge.
         let rounding = 64.0 * Real::EPSILON * self.magnitude();
         let is_same = |a: &RayIntersection, b: &RayIntersection| {
@@ -321,12 +325,13 @@ impl<'a> MeshView<'a> {
         let (mut parts, mut end) = (1, None);
         for same in self.hits(ray).chunk_by(is_same) {
             let left = same.iter().map(sign).sum::<i32>().signum();
-            let is_beyond = end.is_some() && (left < 0 || outward.is_none());
-            if is_beyond {
+            if end.is_some() && left < 0 {
                 break;
             }
             parts -= left;
-            end = if left > 0 && parts <= 0 { same.first().copied() } else { end };
+            if left > 0 && parts <= 0 {
+                end = same.first().copied();
+            }
         }
         // Parry turns normals against the ray.
         end.map(|hit| (hit.time_of_impact, -hit.normal))

@@ -1,8 +1,8 @@
 //! The first touch of two bodies on any paths, by conservative advancement.
 //!
 //! If no point of one body moves faster than `s` against the other, bodies that are `d` apart do
-//! not touch before `d/s` has passed. Steps of that length approach the time of impact from below
-//! (Mirtich, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 1996).
+//! not touch before `d/s` has passed. A step of `d/s` ends before the impact. Source:
+//! Mirtich, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 1996.
 //!
 //! Bodies may touch at the start ([`advance_from_contact`]). A pair of parts that touches is an
 //! impact if it approaches along the normal of the contact. The search excludes other such pairs

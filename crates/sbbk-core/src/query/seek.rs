@@ -9,7 +9,8 @@ use std::ops::ControlFlow;
 use crate::traverse::{Compare, DescentScratch, NodePair, expand, leaves_at};
 use crate::tree::{LeafBatch, Tree};
 
-/// Memory of a query, kept by the caller: after the first few nothing is allocated.
+/// Memory of a query, kept by the caller. After a few queries nothing is allocated, but heights of
+/// nodes at parallel faces.
 #[derive(Clone, Debug, Default)]
 pub struct SearchScratch {
     stack: Vec<(f32, NodePair)>,

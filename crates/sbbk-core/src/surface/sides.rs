@@ -115,8 +115,8 @@ pub fn winding_sign(
 /// Limit of the tests for walls. Walls count as faces beyond this limit.
 #[derive(Clone, Copy)]
 pub(super) struct WallLimit {
-    /// Number of triangles near the rays of these tests, at most. Higher: meshes of open parts in
-    /// each other are slower. Lower: walls within such meshes have contacts.
+    /// Work limit, in triangles near rays. Higher: meshes of open parts in each other are slower.
+    /// Lower: walls within such meshes have contacts.
     work: i64,
     /// True if others use the memo of walls. Known walls then count as new ones, so a side does not
     /// depend on these others.
@@ -202,9 +202,9 @@ impl<'a, T: RayTriangles> RayMesh<'a, T> {
         (rays.is_exact.get() || one == sign(1)).then_some(one)
     }
 
-    /// Sends a ray to the front of a triangle and another to the back, and tells the side between
-    /// them. A ray from a face to the back may leave through a triangle that is wound the other
-    /// way. Also returns true if the rays cannot be wrong.
+    /// Returns the side of a triangle by a ray to the front, and by one to the back if the first
+    /// does not tell both. A ray from a face to the back may leave through a triangle that is wound
+    /// the other way. Also returns true if the rays cannot be wrong.
     fn sample(&self, triangle: u32, i: u32) -> (Side, bool) {
         let rays = Rays::from_middle(self, triangle, i, STEEP);
         let Some(rays) = rays else { return (Side::Sheet, false) };

@@ -7,11 +7,11 @@
 //!
 //! # Allowances
 //!
-//! `M` is the largest absolute coordinate of a tree, and `T` that of a translation. `s` is the
-//! scale of a rotation, 1 up to the rounding of its quaternion, and `m` a margin. `W = M1 + T +
-//! 2·s·M2` bounds all coordinates of two meshes in the frame of the first, as the row sums of `|R|`
-//! are at most `√3·s < 2·s`. `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Tests
-//! fail without most of these allowances.
+//! Trees have absolute coordinates up to `M`, and translations up to `T`. `s` is the scale of a
+//! rotation, 1 up to the rounding of its quaternion, and `m` a margin. `W = M1 + T + 2·s·M2` bounds
+//! all coordinates of two meshes in the frame of the first, as the row sums of `|R|` are at most
+//! `√3·s < 2·s`. `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Most allowances
+//! have a test that needs them.
 //!
 //! | place | rounded | bound | allowance |
 //! |---|---|---|---|

@@ -1,13 +1,12 @@
 //! Velocities of a pile after one step, beside those of a converged step.
 //!
-//! One backend runs the scene. At some moments of this run every backend makes the same step, with
+//! A single backend runs the scene. At some moments every backend makes the same step, with
 //! several numbers of solver iterations (Rapier's substeps). The *reference* makes the step with
 //! every contact, without recycling and clusters, and with far more iterations. Bodies are led
 //! along the run for some steps before, so that each solver starts from its own impulses.
 //!
-//! The error is the difference of the velocities from those of the reference, divided by the
-//! contact impulses of the reference. Velocities are weighted by mass: their norm is the root of
-//! twice the kinetic energy.
+//! The error is the change of velocities against the reference, in shares of its contact impulses.
+//! Velocities are weighted by mass: their norm is the root of twice the kinetic energy.
 
 use crate::prelude::*;
 mod led;
