@@ -14,7 +14,7 @@ use sbbk_core::surface::{
 };
 
 use super::flags::TriangleFlags;
-use super::neighbours::{Neighbours, is_two_sided, sliver};
+use super::neighbours::{Neighbours, has_front, sliver};
 use super::rays::MeshRays;
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -95,11 +95,11 @@ impl MeshFacets<'_> {
         }
     }
 
-    /// Returns true if a triangle has a double that is wound the other way.
-    pub(crate) fn is_two_sided(self, triangle: u32) -> bool {
+    /// Returns true if the winding of a triangle tells the front of a sheet.
+    pub(crate) fn has_front(self, triangle: u32) -> bool {
         match self.twins {
-            Twins::All(surface, _) => surface.has_doubles() && is_two_sided(self.mesh, triangle),
-            Twins::Near(known) => known.of(self.mesh, triangle).is_two_sided(),
+            Twins::All(surface, _) => surface.is_oriented() || has_front(self.mesh, triangle),
+            Twins::Near(known) => known.of(self.mesh, triangle).has_front(),
         }
     }
 
@@ -272,6 +272,40 @@ mod tests {
             }
         }
         assert!(found > 1000 && doubles > 100 && slivers > 100, "{found} {doubles} {slivers}");
+    }
+
+    /// Grids with double triangles, walls on them, turned triangles, or a back. Would catch doubles
+    /// and walls that take a front away.
+    #[test]
+    fn triangles_that_are_wound_against_each_other_have_no_front() {
+        let at = |x: usize, y: usize, z: f32| Vector::new(x as f32, z, y as f32);
+        let corners = (0..25).map(|i| at(i % 5, i / 5, 0.0));
+        let vertices: Vec<Vector> = corners.chain((0..5).map(|x| at(x, 2, 1.0))).collect();
+        let cells = (0..16).map(|i| i / 4 * 5 + i % 4);
+        let grid: Vec<_> = cells.flat_map(|i| [[i, i + 5, i + 1], [i + 1, i + 5, i + 6]]).collect();
+        let turned = |of: &[[u32; 3]]| of.iter().map(|&[a, b, c]| [a, c, b]).collect::<Vec<_>>();
+        let wall = (0..4).flat_map(|x| [[10 + x, 11 + x, 25 + x], [25 + x, 11 + x, 26 + x]]);
+        let wall: Vec<_> = wall.collect();
+        let (kept, rest) = grid.split_at(13);
+        let forms = [
+            (true, grid.clone()),
+            (true, [&grid[..], &grid].concat()),
+            (true, [&grid[..], &wall].concat()),
+            (true, [&grid[..], &turned(&wall)].concat()),
+            (false, [&grid[..], &turned(&grid)].concat()),
+            (false, [kept, &turned(&rest[..1]), &rest[1..]].concat()),
+        ];
+        for (expected, triangles) in forms {
+            let mesh = TriMesh::new(vertices.clone(), triangles).expect("there are triangles");
+            let whole = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
+            let flags = mesh.indices().iter().map(|_| TriangleFlags::default()).collect::<Vec<_>>();
+            let known = Neighbours::new(mesh.indices().len());
+            for twins in [Twins::All(&whole, &flags), Twins::Near(&known)] {
+                let memo = &PlaceMemo::default();
+                let facets = MeshFacets { mesh: &mesh, twins, memo, declared: None };
+                assert_eq!(facets.has_front(13), expected, "{:?}", mesh.indices());
+            }
+        }
     }
 
     /// Boxes are alone, touch, cross, or are within others. Would catch parts that share a wrong

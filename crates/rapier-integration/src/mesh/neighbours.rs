@@ -16,7 +16,7 @@ use super::flags::TriangleFlags;
 #[derive(Debug, Default)]
 pub(super) struct Neighbour {
     /// 0 before the search, 1 for none, else 2 more than the twin. The highest bits tell if the
-    /// triangle is a double, and if it has a double that is wound the other way.
+    /// triangle is a double, and if it has no front.
     twins: [AtomicU32; 3],
     pub(super) flags: TriangleFlags,
 }
@@ -42,8 +42,8 @@ impl Neighbour {
         self.has_highest(0)
     }
 
-    pub(super) fn is_two_sided(&self) -> bool {
-        self.has_highest(1)
+    pub(super) fn has_front(&self) -> bool {
+        !self.has_highest(1)
     }
 
     /// Finds the neighbours of a triangle in about 1 µs. Other threads may find the same ones
@@ -51,7 +51,7 @@ impl Neighbour {
     #[cold]
     fn find(&self, mesh: &TriMesh, triangle: u32) {
         let (twins, is_double) = twins(mesh, triangle);
-        let highest = [is_double, is_two_sided(mesh, triangle), false];
+        let highest = [is_double, !has_front(mesh, triangle), false];
         for edge in [2, 1, 0] {
             let twin = twins[edge].map_or(1, |twin| twin + 2);
             let highest = if highest[edge] { Self::HIGHEST } else { 0 };
@@ -79,12 +79,29 @@ fn near_edge(mesh: &TriMesh, ends: [Vector; 2]) -> Vec<u32> {
     mesh.bvh().intersect_aabb(&Aabb::new(one.min(other), one.max(other))).collect()
 }
 
-/// Returns true if a triangle has a double that is wound the other way.
-pub(super) fn is_two_sided(mesh: &TriMesh, triangle: u32) -> bool {
-    let corners = |triangle: u32| *mesh.triangle(triangle).vertices();
-    let [a, b, c] = corners(triangle);
-    let backs = [[a, c, b], [c, b, a], [b, a, c]];
-    near_edge(mesh, [a, b]).into_iter().any(|other| backs.contains(&corners(other)))
+/// Returns true if the winding of a triangle tells the front of a sheet. It does not if a double is
+/// wound the other way, or if two triangles near it are wound against each other.
+pub(super) fn has_front(mesh: &TriMesh, triangle: u32) -> bool {
+    let half_edges = |of: u32| {
+        let [a, b, c] = mesh.triangle(of).vertices().map(place);
+        [[a, b, c], [b, c, a], [c, a, b]]
+    };
+    let [own, ..] = half_edges(triangle);
+    let bounds = mesh.triangle(triangle).local_aabb();
+    let mut edges = ArrayVec::<_, { 3 * MOST_NEAR }>::new();
+    for theirs in mesh.bvh().intersect_aabb(&bounds).take(MOST_NEAR).map(half_edges) {
+        if theirs.iter().any(|&[a, b, c]| own == [b, a, c]) {
+            return false;
+        }
+        edges.extend(theirs.map(|[a, b, c]| ([a.min(b), a.max(b)], a < b, c)));
+    }
+    edges.sort_unstable();
+    // More than two triangles at an edge, besides doubles, cannot all run against each other.
+    let is_turned = |of: &[([Place; 2], bool, Place)]| {
+        let [one, .., two] = of else { return false };
+        one != two && one.1 == two.1 && of.iter().all(|edge| edge == one || edge == two)
+    };
+    !edges.chunk_by(|one, other| one.0 == other.0).any(is_turned)
 }
 
 /// Returns the twins of the edges of a triangle, and whether it is a double. Vertices at one place

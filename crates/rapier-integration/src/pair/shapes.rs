@@ -302,9 +302,9 @@ impl<'q> TriangleShape<'q> {
         }
     }
 
-    /// Returns true if a triangle of a mesh has a double that is wound the other way.
-    pub(super) fn is_two_sided(&self, triangle: u32) -> bool {
-        self.surface().is_some_and(|surface| surface.facets().is_two_sided(triangle))
+    /// Returns true if the winding of a triangle tells the front of a sheet.
+    pub(super) fn has_front(&self, triangle: u32) -> bool {
+        self.surface().is_none_or(|surface| surface.facets().has_front(triangle))
     }
 
     /// Returns true if the shape has an inside. Only contacts of surfaces ask for it.

@@ -51,10 +51,9 @@ impl TriangleShapes<'_> {
         })
     }
 
-    /// Returns the height over the front of a sheet, with a preference for the front. A triangle
-    /// with a double that is wound the other way has no front.
+    /// Returns the height over the front of a sheet, with a preference for the front.
     pub(super) fn leaning(&self, over: OverSheet, sheet: usize, triangle: u32) -> f64 {
-        let has_front = !self[sheet].is_two_sided(triangle);
+        let has_front = self[sheet].has_front(triangle);
         if has_front { over.height + LEAN * over.half_height } else { over.height }
     }
 
@@ -66,11 +65,13 @@ impl TriangleShapes<'_> {
         Some((pair, sheet, self.over_sheet(sheet)?))
     }
 
-    /// Returns true if triangles cross a sheet, and the body is a little behind the front and may
-    /// come from either side. A body at rest, which sinks in a little, does not.
+    /// Returns true if triangles cross a sheet, and the body may come from either side. Its middle
+    /// is a little behind the front, or the sheet has no front there. A body at rest sinks in a
+    /// little, and is not in doubt.
     pub(super) fn is_side_doubtful(&self, crossings: &[Crossing]) -> bool {
         let Some((pair, sheet, over)) = self.crossed_sheet(crossings) else { return false };
-        if self.leaning(over, sheet, pair[sheet]) > 0.0 {
+        let triangle = pair[sheet];
+        if self[sheet].has_front(triangle) && self.leaning(over, sheet, triangle) > 0.0 {
             return false;
         }
         let OverSheet { height, half_height, .. } = over;

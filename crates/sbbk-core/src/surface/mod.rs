@@ -80,6 +80,11 @@ impl Surface {
         !self.adjacency.doubles.is_empty()
     }
 
+    /// True if no triangle has a double or is wound against a neighbour.
+    pub fn is_oriented(&self) -> bool {
+        !self.has_doubles() && !self.adjacency.is_turned
+    }
+
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     #[inline]
     pub fn twin(&self, half_edge: u32) -> Option<u32> {

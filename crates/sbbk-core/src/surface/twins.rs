@@ -22,6 +22,8 @@ pub(super) struct Adjacency {
     pub(super) twins: CompactIndices,
     /// Number of triangles and first triangle at each hub, by vertex.
     pub(super) hubs: FxHashMap<Place, (u32, u32)>,
+    /// True if the two half-edges of an edge run the same way.
+    pub(super) is_turned: bool,
     /// True if closed components have few triangles on average.
     pub(super) has_small_components: bool,
     /// `None` above [`PAIRED`] triangles, where no component is known to be closed.
@@ -228,6 +230,7 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
     let mut twins = paired(&edges.all, triangles.len());
     let hubs = hubs(vertices, &welded, &valence, triangles);
     let count = triangles.len();
+    let is_turned = edges.all.iter().any(|edge| matches!(edge.counts, [2, 0] | [0, 2]));
     let components = (count <= PAIRED).then(|| Components::new(&edges, count));
     let mut doubles = doubles(&welded, triangles, &twins);
     if !doubles.is_empty() {
@@ -238,7 +241,7 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
         doubles = doubles.with(&slivers.all, triangles.len());
     }
     let twins = CompactIndices::new(twins.into_iter());
-    Adjacency { twins, hubs, has_small_components, components, doubles }
+    Adjacency { twins, hubs, is_turned, has_small_components, components, doubles }
 }
 
 /// Returns the twin of each half-edge of `count` triangles.
