@@ -158,7 +158,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         }
         let start = from + one.clear_of_own_plane(0.0, from, until);
         let options = AdvanceOptions { start, end: until, ..self.options };
-        let found = advance(&mut one, |time| self.cast.placement_at(time), options)?;
+        let found = advance(&mut one, &[], |time| self.cast.placement_at(time), options)?;
         if self.counts(&mut one, &found, from) {
             return Some(found);
         }
@@ -207,7 +207,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
                     return None;
                 }
                 let options = AdvanceOptions { start: time, end: until, ..*options };
-                let found = advance(one, placement_at, options)?;
+                let found = advance(one, &[], placement_at, options)?;
                 (found.time == time || self.counts(one, &found, time)).then_some(found)
             },
         )
@@ -403,7 +403,7 @@ impl Bodies for MovingTriangle<'_> {
         self.nearest(placement, reach, &[]).into_iter().for_each(found);
     }
 
-    fn clear_time(&mut self, nearest: &Found, time: f64, _: &[[u32; 2]]) -> f64 {
+    fn clear_time(&mut self, nearest: &Found, time: f64) -> f64 {
         let MovingConvex { search, options, .. } = self.moving;
         let [_, shape] = self.moving.motions();
         let [_, normal] = search.mesh_place.swap(nearest.normals);

@@ -71,7 +71,7 @@ impl NonlinearCast<'_> {
         let options = AdvanceOptions { start, end, ..options };
         let placement_at = |time| self.placement_at(time);
         if self.stop_at_penetration || start > f64::from(self.start) {
-            return advance(bodies, placement_at, options);
+            return advance(bodies, &[], placement_at, options);
         }
         advance_from_contact(bodies, placement_at, options, |pair, placement| {
             self.approaches(&Found::of_pair(pair, placement), options.start, options.tolerance)

@@ -35,9 +35,9 @@ pub trait Bodies {
     /// Calls `found` with all pairs that are at most `reach` apart.
     fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(Self::Pair));
 
-    /// Returns a time, counted from `time`, in which no pair except those in `excluded` meets. 0 if
-    /// only the distance of the nearest pair is known.
-    fn clear_time(&mut self, _nearest: &Self::Pair, _time: f64, _excluded: &[[u32; 2]]) -> f64 {
+    /// Returns a time, counted from `time`, in which no pair meets. 0 if only the distance of the
+    /// nearest pair is known.
+    fn clear_time(&mut self, _nearest: &Self::Pair, _time: f64) -> f64 {
         0.0
     }
 }
@@ -120,13 +120,43 @@ pub struct Advance<P> {
 ///
 /// Bodies that may meet before the next f64 after a time have met at that time. `None` if there is
 /// no such time until the end, or if a number is not finite. Bodies that are within the tolerance
-/// at the end, and would touch later, may have none.
+/// at the end, and would touch later, may have none. `excluded` lists pairs to skip, in ascending
+/// order.
 pub fn advance<B: Bodies>(
     bodies: &mut B,
+    excluded: &[[u32; 2]],
     placement_at: impl Fn(f64) -> Placement,
     options: AdvanceOptions,
 ) -> Option<Advance<B::Pair>> {
-    advance_except(bodies, &[], placement_at, options)
+    let AdvanceOptions { start, end, speed_bound, tolerance, step_limit } = options;
+    let mut time = start;
+    let mut last = None;
+    for _ in 0..step_limit.max(1) {
+        // Unlike "time > end", this rejects a NaN.
+        let in_time = time <= end;
+        if !in_time {
+            return None;
+        }
+        // Bodies farther apart than they can travel until the end do not meet. Zero speed times an
+        // infinite time is NaN, which `max` replaces by 0.
+        let reach = (speed_bound * (end - time)).max(0.0) + tolerance;
+        let placement = placement_at(time);
+        let pair = bodies.nearest(&placement, reach, excluded)?;
+        let found = Advance { time, pair, placement, has_converged: pair.distance() <= tolerance };
+        if found.has_converged {
+            return Some(found);
+        }
+        let clear = (pair.distance() / speed_bound).max(bodies.clear_time(&pair, time));
+        if clear == f64::INFINITY {
+            return None;
+        }
+        if time + clear <= time {
+            // An infinite speed bounds nothing.
+            return Some(Advance { has_converged: speed_bound.is_finite(), ..found });
+        }
+        (time, last) = (time + clear, Some(found));
+    }
+    last
 }
 
 /// Returns the first impact of two bodies that may touch at the start.
@@ -157,45 +187,7 @@ pub fn advance_from_contact<B: Bodies>(
     }
     let mut excluded: Vec<[u32; 2]> = touching.iter().map(PartPair::name).collect();
     excluded.sort_unstable();
-    advance_except(bodies, &excluded, placement_at, options)
-}
-
-/// [`advance`] without some pairs of parts, given in ascending order.
-fn advance_except<B: Bodies>(
-    bodies: &mut B,
-    excluded: &[[u32; 2]],
-    placement_at: impl Fn(f64) -> Placement,
-    options: AdvanceOptions,
-) -> Option<Advance<B::Pair>> {
-    let AdvanceOptions { start, end, speed_bound, tolerance, step_limit } = options;
-    let mut time = start;
-    let mut last = None;
-    for _ in 0..step_limit.max(1) {
-        // Unlike "time > end", this rejects a NaN.
-        let in_time = time <= end;
-        if !in_time {
-            return None;
-        }
-        // Bodies farther apart than they can travel until the end do not meet. Zero speed times an
-        // infinite time is NaN, which `max` replaces by 0.
-        let reach = (speed_bound * (end - time)).max(0.0) + tolerance;
-        let placement = placement_at(time);
-        let pair = bodies.nearest(&placement, reach, excluded)?;
-        let found = Advance { time, pair, placement, has_converged: pair.distance() <= tolerance };
-        if found.has_converged {
-            return Some(found);
-        }
-        let clear = (pair.distance() / speed_bound).max(bodies.clear_time(&pair, time, excluded));
-        if clear == f64::INFINITY {
-            return None;
-        }
-        if time + clear <= time {
-            // An infinite speed bounds nothing.
-            return Some(Advance { has_converged: speed_bound.is_finite(), ..found });
-        }
-        (time, last) = (time + clear, Some(found));
-    }
-    last
+    advance(bodies, &excluded, placement_at, options)
 }
 
 #[cfg(test)]
@@ -207,12 +199,9 @@ mod tests {
     /// Bodies that stay at a distance, and the number of searches.
     struct Still(f64, usize);
 
-    #[derive(Copy, Clone)]
-    struct Pair(f64);
-
-    impl PartPair for Pair {
+    impl PartPair for f64 {
         fn distance(&self) -> f64 {
-            self.0
+            *self
         }
 
         fn name(&self) -> [u32; 2] {
@@ -221,14 +210,14 @@ mod tests {
     }
 
     impl Bodies for Still {
-        type Pair = Pair;
+        type Pair = f64;
 
-        fn nearest(&mut self, _: &Placement, _: f64, _: &[[u32; 2]]) -> Option<Pair> {
+        fn nearest(&mut self, _: &Placement, _: f64, _: &[[u32; 2]]) -> Option<f64> {
             self.1 += 1;
-            Some(Pair(self.0))
+            Some(self.0)
         }
 
-        fn within(&mut self, _: &Placement, _: f64, _: impl FnMut(Pair)) {}
+        fn within(&mut self, _: &Placement, _: f64, _: impl FnMut(f64)) {}
     }
 
     /// Would catch steps that are too short to change the time, or infinite.
@@ -243,7 +232,7 @@ mod tests {
                 tolerance: 1.0e-9,
                 step_limit: 2000,
             };
-            let found = advance(bodies, |_| Placement::new(&Pose3::IDENTITY), options);
+            let found = advance(bodies, &[], |_| Placement::new(&Pose3::IDENTITY), options);
             assert_eq!(
                 (found.map(|found| found.has_converged), bodies.1),
                 (has_met.then_some(true), 1)

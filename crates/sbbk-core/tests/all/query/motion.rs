@@ -43,7 +43,7 @@ impl Motion {
         let [tree1, tree2] = meshes.map(tree);
         let scratch = &mut SearchScratch::default();
         let bodies = &mut MeshBodies { trees: (&tree1, &tree2), scratch };
-        advance(bodies, |time| Placement::new(&self.at(time)), self.options(meshes[1], end))
+        advance(bodies, &[], |time| Placement::new(&self.at(time)), self.options(meshes[1], end))
     }
 
     fn advance_from_contact(&self, meshes: [&Soup; 2], end: f64) -> Option<Advance<FoundPair>> {
@@ -90,7 +90,7 @@ fn advancement_uses_the_last_moment_and_the_last_step() {
     let fall = |options| {
         let placement_at = |time| Placement::new(&Pose3::translation(0.5, 0.5, 1.0 - time as f32));
         let scratch = &mut SearchScratch::default();
-        advance(&mut MeshBodies { trees: (&floor, &floor), scratch }, placement_at, options)
+        advance(&mut MeshBodies { trees: (&floor, &floor), scratch }, &[], placement_at, options)
     };
     let exact =
         AdvanceOptions { start: 0.0, end: 4.0, speed_bound: 1.0, tolerance: 0.0, step_limit: 10 };
