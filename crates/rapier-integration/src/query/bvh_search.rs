@@ -1,7 +1,6 @@
 //! Queries of two meshes over Parry's BVHs: best-first search for a pair of triangles, down both at
 //! once.
 
-use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
@@ -36,20 +35,13 @@ struct Node {
     triangle: Option<u32>,
 }
 
-/// The normal of the first impact so far, in both frames. Bodies meet no sooner than along the
-/// normal.
+/// The normal of the nearest pair or the first impact so far, in both frames. Other pairs are no
+/// nearer, and meet no sooner, than along the normal.
 #[derive(Copy, Clone)]
 struct FirstNormal {
     normals: [DVec3; 2],
-    /// Speed against the normal.
+    /// Speed against the normal of an impact, else 1.
     approach: f64,
-}
-
-impl FirstNormal {
-    /// Returns the time that a way along the normal takes.
-    fn time(&self, way: f64) -> f64 {
-        way / self.approach
-    }
 }
 
 /// Difference of distances that counts as none, in [roundings](BvhSearch::rounding). Higher: less
@@ -112,29 +104,21 @@ impl BvhSearch<'_> {
             return Some(found);
         }
         let target = f64::from(options.target_distance) + self.rounding();
-        let normal = Cell::new(None::<FirstNormal>);
         let mut first = None::<Cast>;
         self.search(
             f64::from(options.max_time),
-            |one, two| {
-                let along = |of: FirstNormal| of.time(one.gap_along(two, of.normals) - target);
-                one.time(two, velocity, target).max(normal.get().map_or(0.0, along))
-            },
+            target,
+            |one, two| one.time(two, velocity, target),
             |triangles, latest| {
-                let along =
-                    |of: FirstNormal| of.time(self.gap_along(of.normals, triangles) - target);
-                if normal.get().is_some_and(|of| along(of) > latest) {
-                    return None;
-                }
                 let found = cast(triangles, latest)?;
                 if first.is_some_and(|first| found.time >= first.time) {
                     return None;
                 }
                 first = Some(found);
-                normal.set(self.first_normal(&found.pair, velocity));
+                let normal = self.first_normal(&found.pair, velocity);
                 // Parallel faces have many impacts at the same time.
-                let tie = normal.get().map_or(0.0, |of| of.time(TIES * self.rounding()));
-                Some(if found.time > 0.0 { found.time - tie } else { f64::NEG_INFINITY })
+                let tie = normal.map_or(0.0, |of| TIES * self.rounding() / of.approach);
+                Some((if found.time > 0.0 { found.time - tie } else { f64::NEG_INFINITY }, normal))
             },
         );
         first
@@ -148,13 +132,16 @@ impl BvhSearch<'_> {
     }
 
     /// Visits pairs of triangles, the least bound first, while bounds are at most the limit.
-    /// `visit` gets the limit and may return a lower one.
+    /// `visit` gets the limit. It may return a lower one, and a normal along which gaps beyond
+    /// `target` are bounds, too.
     fn search(
         &self,
         mut limit: f64,
+        target: f64,
         bound: impl Fn(&PlacedBox, &PlacedBox) -> f64,
-        mut visit: impl FnMut([u32; 2], f64) -> Option<f64>,
+        mut visit: impl FnMut([u32; 2], f64) -> Option<(f64, Option<FirstNormal>)>,
     ) {
+        let mut first = None::<FirstNormal>;
         let roots = (f64::NEG_INFINITY, [0, 1].map(|i| self.root(i)));
         best_first(&mut Vec::with_capacity(64), roots, |key, [node1, node2], stack| {
             // A bound that is NaN bounds nothing.
@@ -162,16 +149,26 @@ impl BvhSearch<'_> {
                 return ControlFlow::Continue(());
             }
             if let (Some(triangle1), Some(triangle2)) = (node1.triangle, node2.triangle) {
-                limit =
-                    visit([triangle1, triangle2], limit).map_or(limit, |least| least.min(limit));
+                let triangles = [triangle1, triangle2];
+                let is_beyond = |of: FirstNormal| {
+                    (self.gap_along(of.normals, triangles) - target) / of.approach > limit
+                };
+                if !first.is_some_and(is_beyond)
+                    && let Some((least, normal)) = visit(triangles, limit)
+                {
+                    (limit, first) = (least.min(limit), normal);
+                }
                 return ControlFlow::Continue(());
             }
             let is_first = node1.triangle.is_none()
                 && (node2.triangle.is_some() || node1.bounds.size() >= node2.bounds.size());
             let parent = if is_first { &node1 } else { &node2 };
             for child in self.children(usize::from(!is_first), parent) {
-                let pair @ [one, two] = if is_first { [child, node2] } else { [node1, child] };
-                let key = bound(&one.bounds, &two.bounds);
+                let pair = if is_first { [child, node2] } else { [node1, child] };
+                let [one, two] = pair.each_ref().map(|node| &node.bounds);
+                let along =
+                    |of: FirstNormal| (one.gap_along(two, of.normals) - target) / of.approach;
+                let key = bound(one, two).max(first.map_or(f64::NEG_INFINITY, along));
                 if key > limit {
                     continue;
                 }
@@ -189,18 +186,10 @@ impl BvhSearch<'_> {
             return None;
         }
         let lost = self.rounding();
-        // From mesh 1 to mesh 2, in both frames, of the nearest pair so far.
-        let normals = Cell::new(None::<[DVec3; 2]>);
         let mut nearest = None::<FoundPair>;
-        let bound = |one: &PlacedBox, two: &PlacedBox| {
-            let along = normals.get().map_or(0.0, |normals| one.gap_along(two, normals));
-            one.gap(two).max(along) - lost
-        };
-        self.search(limit, bound, |triangles, limit| {
+        let bound = |one: &PlacedBox, two: &PlacedBox| one.gap(two) - lost;
+        self.search(limit, lost, bound, |triangles, limit| {
             if nearest.is_some_and(|nearest| nearest.is_touching) || !counts(triangles) {
-                return None;
-            }
-            if normals.get().is_some_and(|normals| self.gap_along(normals, triangles) > limit) {
                 return None;
             }
             let pair = self.pair(triangles, limit)?;
@@ -210,11 +199,11 @@ impl BvhSearch<'_> {
             }
             nearest = Some(pair);
             if pair.is_touching {
-                return Some(f64::NEG_INFINITY);
+                return Some((f64::NEG_INFINITY, None));
             }
-            normals.set(Some(self.normals(&pair)));
             // Parallel faces have many pairs at the same distance.
-            Some(distance - TIES * lost)
+            let normal = FirstNormal { normals: self.normals(&pair), approach: 1.0 };
+            Some((distance - TIES * lost, Some(normal)))
         });
         nearest
     }
@@ -225,7 +214,8 @@ impl BvhSearch<'_> {
         let mut deepest = None::<(FoundPair, [DVec3; 2])>;
         self.visit_near(limit, |triangles| {
             let least = deepest.map_or(f64::INFINITY, |(pair, _)| pair.contact.distance);
-            let is_shallow = |(_, normals)| self.gap_along(normals, triangles) >= least;
+            let is_shallow =
+                |(_, normals)| self.gap_along(normals, triangles) - self.rounding() >= least;
             if !deepest.is_some_and(is_shallow)
                 && let Some(pair) = self.pair(triangles, limit)
                 && pair.contact.distance < least
@@ -259,13 +249,14 @@ impl BvhSearch<'_> {
         [normal, self.placement.rotation.transpose() * normal]
     }
 
-    /// Gap between two triangles along a direction, given in both frames: at most their distance.
+    /// Gap between two triangles along a direction, given in both frames: at most their distance,
+    /// up to rounding.
     fn gap_along(&self, [normal1, normal2]: [DVec3; 2], triangles: [u32; 2]) -> f64 {
         let [one, two] = [0, 1].map(|i| self.meshes[i].corners(triangles[i]).map(Vec3::as_dvec3));
         let [a, b, c] = one.map(|corner| normal1.dot(corner));
         let [d, e, f] = two.map(|corner| normal2.dot(corner));
         let offset = normal1.dot(self.placement.translation);
-        d.min(e).min(f) + offset - a.max(b).max(c) - self.rounding()
+        d.min(e).min(f) + offset - a.max(b).max(c)
     }
 
     /// Contact of two triangles that touch or are at most `margin` apart.
