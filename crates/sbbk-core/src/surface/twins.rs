@@ -59,19 +59,15 @@ impl Components {
 pub(super) struct TriangleSet(Box<[u64]>);
 
 impl TriangleSet {
-    /// A set of what `insert` adds to a list of bits for `count` triangles.
-    fn new(count: usize, insert: impl FnOnce(&mut [u64])) -> Self {
-        let mut bits = vec![0; count.div_ceil(64)];
-        insert(&mut bits);
-        Self(if bits.iter().all(|&word| word == 0) { Box::default() } else { bits.into() })
-    }
-
-    /// This set of `count` triangles and some more.
-    fn with(&self, more: &[u32], count: usize) -> Self {
-        Self::new(count, |bits| {
-            bits.iter_mut().zip(&*self.0).for_each(|(word, known)| *word = *known);
-            more.iter().for_each(|&triangle| _ = insert(bits, triangle as usize));
-        })
+    /// Adds one of `count` triangles. Returns false if it was there.
+    fn insert(&mut self, triangle: u32, count: usize) -> bool {
+        if self.is_empty() {
+            self.0 = vec![0; count.div_ceil(64)].into();
+        }
+        let (word, bit) = (&mut self.0[triangle as usize / 64], 1 << (triangle % 64));
+        let is_new = *word & bit == 0;
+        *word |= bit;
+        is_new
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -89,26 +85,18 @@ impl TriangleSet {
     }
 }
 
-/// Adds a triangle. Returns false if it was there.
-fn insert(bits: &mut [u64], triangle: usize) -> bool {
-    let (word, bit) = (&mut bits[triangle / 64], 1 << (triangle % 64));
-    let is_new = *word & bit == 0;
-    *word |= bit;
-    is_new
-}
-
 /// Returns the triangles of components with a border, among `count` triangles.
 fn open_parts(Edges { all, around, .. }: &Edges, count: usize) -> TriangleSet {
-    TriangleSet::new(count, |bits| {
-        let at_borders = all.iter().filter(|edge| edge.is_border()).flat_map(|edge| edge.last);
-        let mut reached: Vec<u32> = at_borders.filter(|&half_edge| half_edge != NONE).collect();
-        while let Some(half_edge) = reached.pop() {
-            let triangle = half_edge as usize / 3;
-            if insert(bits, triangle) {
-                reached.extend(&around[3 * triangle..][..3]);
-            }
+    let mut open = TriangleSet::default();
+    let at_borders = all.iter().filter(|edge| edge.is_border()).flat_map(|edge| edge.last);
+    let mut reached: Vec<u32> = at_borders.filter(|&half_edge| half_edge != NONE).collect();
+    while let Some(half_edge) = reached.pop() {
+        let triangle = half_edge / 3;
+        if open.insert(triangle, count) {
+            reached.extend(&around[3 * triangle as usize..][..3]);
         }
-    })
+    }
+    open
 }
 
 /// Returns the triangles that have the corners of an earlier one.
@@ -121,16 +109,15 @@ fn doubles(welded: &[u32], triangles: &[[u32; 3]], twins: &[Option<u32>]) -> Tri
         let first = neighbours.next();
         neighbours.all(|other| Some(other) == first)
     };
-    let mut known = FxHashSet::default();
-    TriangleSet::new(triangles.len(), |bits| {
-        for triangle in (0..triangles.len()).filter(|&triangle| may_be_double(triangle)) {
-            let mut corners = triangles[triangle].map(|corner| welded[corner as usize]);
-            corners.sort_unstable();
-            if !known.insert(corners) {
-                insert(bits, triangle);
-            }
+    let (mut known, mut doubles) = (FxHashSet::default(), TriangleSet::default());
+    for triangle in (0..triangles.len()).filter(|&triangle| may_be_double(triangle)) {
+        let mut corners = triangles[triangle].map(|corner| welded[corner as usize]);
+        corners.sort_unstable();
+        if !known.insert(corners) {
+            doubles.insert(triangle as u32, triangles.len());
         }
-    })
+    }
+    doubles
 }
 
 /// Triangles without an area. Each is a point, or has an edge of a triangle that has one.
@@ -237,9 +224,7 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
         let single = edges_of(&|triangle| !doubles.contains(triangle) && !hangs(triangle));
         twins = paired(&single.all, triangles.len());
     }
-    if !slivers.all.is_empty() {
-        doubles = doubles.with(&slivers.all, triangles.len());
-    }
+    slivers.all.iter().for_each(|&triangle| _ = doubles.insert(triangle, count));
     let twins = CompactIndices::new(twins.into_iter());
     Adjacency { twins, hubs, is_turned, has_small_components, components, doubles }
 }
