@@ -29,11 +29,11 @@ use wide::f32x4;
 
 use crate::contact::{TriangleContact, contact};
 use crate::simd::Spread;
-use crate::traverse::{Along, Compare, NodeLanes, NodePair, PairFrame, Placement, Toward, within};
+use crate::traverse::{Along, NodeLanes, PairFrame, Placement, Toward};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 
-use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::seek::{BestNormal, FOUND, LowerBound, Pruned, SearchScratch, seek};
 use super::triangles::{FoundPair, TrianglePair};
 
 /// The definition of an impact.
@@ -98,20 +98,18 @@ pub fn cast(
     }
     let mut frame = PairFrame::new(trees, placement, 0.0);
     let speed = velocity.as_dvec3().length();
-    let mut sweep = Sweep {
-        frame: &mut frame,
+    let bound = Sweep {
         velocity,
         inverse_speed: ((1.0 / speed) as f32) * (1.0 - gamma(4)),
         target: target_distance * (1.0 + gamma(4)),
-        limit: max_time.min(f32::MAX),
-        first: None,
     };
+    let limit = max_time.min(f32::MAX);
+    let mut sweep = Pruned { frame: &mut frame, bound, limit, normal: None };
     // Only earlier impacts matter.
     let (mut latest, mut first) = (f64::from(max_time), None::<Cast>);
     let velocity = velocity.as_dvec3();
     seek(trees, &mut sweep, scratch, |sweep, batch1, batch2| {
-        let are_late = |first: &mut FirstNormal| first.toward.are_leaves_beyond(batch1, batch2);
-        if sweep.first.as_mut().is_some_and(are_late) {
+        if sweep.are_leaves_beyond(batch1, batch2) {
             return;
         }
         for lane1 in 0..batch1.count() {
@@ -125,9 +123,8 @@ pub fn cast(
                 let is_first = |cast: &Cast| first.is_none_or(|first| cast.time < first.time);
                 if let Some(cast) = cast.filter(is_first) {
                     (first, latest) = (Some(cast), cast.time);
-                    sweep.first = FirstNormal::of(sweep, target_distance, &cast);
-                    let is_last = |first: &FirstNormal| first.toward.are_meshes_beyond(trees);
-                    let is_over = cast.time <= 0.0 || sweep.first.as_ref().is_some_and(is_last);
+                    sweep.normal = normal_of(sweep, target_distance, &cast);
+                    let is_over = cast.time <= 0.0 || sweep.are_meshes_beyond(trees);
                     sweep.limit = if is_over { FOUND } else { (cast.time as f32).next_up() };
                 }
             }
@@ -298,57 +295,41 @@ fn is_within(pair: &TrianglePair, travel: DVec3, distance: f64) -> bool {
 }
 
 /// Lower bounds of times of impact.
-struct Sweep<'a> {
-    frame: &'a mut PairFrame,
+struct Sweep {
     /// Velocity of mesh 2 against mesh 1, in frame 1.
     velocity: Vec3,
     /// Lower bound of one over the length of the velocity; infinite for no velocity.
     inverse_speed: f32,
     /// Upper bound of the distance that counts as an impact.
     target: f32,
-    /// Later impacts do not matter. Finite, or minus infinity.
-    limit: f32,
-    /// The normal of the first impact so far.
-    first: Option<FirstNormal>,
 }
 
-/// A normal of an impact, as a bound of other times. Bodies are within the target distance no
-/// sooner than along the normal.
-struct FirstNormal {
-    toward: Toward,
-    /// Lower bound of one over the speed against the normal.
-    inverse_approach: f32,
+/// The normal of an impact, as a bound of other times. Bodies are within the target distance no
+/// sooner than along the normal. `None` for a grazing impact.
+fn normal_of(
+    sweep: &Pruned<'_, Sweep>,
+    target: f32,
+    Cast { time, pair, .. }: &Cast,
+) -> Option<BestNormal> {
+    let normal = pair.contact.normal;
+    let approach = -normal.dot(sweep.bound.velocity.as_dvec3());
+    let scale = (1.0 / approach) as f32 * (1.0 - gamma(8));
+    let way = time * (1.0 - AT_ONCE) * approach + f64::from(target);
+    let toward = Toward::new(sweep.frame, normal, way)?;
+    let is_bound = approach > 0.0 && scale.is_finite();
+    is_bound.then_some(BestNormal { toward, target: sweep.bound.target, scale })
 }
 
-impl FirstNormal {
-    /// Returns `None` for a grazing impact.
-    fn of(sweep: &Sweep<'_>, target: f32, Cast { time, pair, .. }: &Cast) -> Option<Self> {
-        let normal = pair.contact.normal;
-        let approach = -normal.dot(sweep.velocity.as_dvec3());
-        let inverse_approach = (1.0 / approach) as f32 * (1.0 - gamma(8));
-        let way = time * (1.0 - AT_ONCE) * approach + f64::from(target);
-        let toward = Toward::new(sweep.frame, normal, way)?;
-        let is_bound = approach > 0.0 && inverse_approach.is_finite();
-        is_bound.then_some(Self { toward, inverse_approach })
-    }
-
-    #[inline(always)]
-    fn times(&self, target: f32, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
-        let ways = self.toward.gaps(nodes) - f32x4::splat(target);
-        ways * f32x4::splat(self.inverse_approach)
-    }
-}
-
-impl Sweep<'_> {
+impl LowerBound for Sweep {
     /// The earliest times, infinite where the nodes pass each other.
     #[inline(always)]
-    fn times(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
+    fn of(&self, frame: &mut PairFrame, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
         let target = f32x4::splat(self.target);
-        let apart = self.frame.signed_gaps(nodes) - target;
+        let apart = frame.signed_gaps(nodes) - target;
         let mut start = (apart * f32x4::splat(self.inverse_speed)).fast_max(f32x4::ZERO);
         let mut end = f32x4::splat(f32::INFINITY);
-        let rounding = f32x4::splat(self.frame.rounding[0]);
-        let Along { offset, reach } = self.frame.along1(nodes, rounding);
+        let rounding = f32x4::splat(frame.rounding[0]);
+        let Along { offset, reach } = frame.along1(nodes, rounding);
         for axis in 0..3 {
             let speed = self.velocity[axis];
             let inverse = f32x4::splat(1.0 / speed.abs());
@@ -360,31 +341,5 @@ impl Sweep<'_> {
         let start = start * f32x4::splat(1.0 - gamma(8));
         let passes = (end * f32x4::splat(1.0 + gamma(8))).simd_lt(start);
         passes.bitselect(f32x4::splat(f32::INFINITY), start)
-    }
-}
-
-impl Bounds for Sweep<'_> {
-    fn limit(&self) -> f32 {
-        self.limit
-    }
-
-    fn are_beyond(&mut self, trees: (&Tree, &Tree), nodes: NodePair) -> bool {
-        self.first.as_mut().is_some_and(|first| first.toward.are_nodes_beyond(trees, nodes))
-    }
-}
-
-impl Compare for Sweep<'_> {
-    type Key = f32;
-
-    #[inline(always)]
-    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
-        let along = self.first.as_ref().map(|first| first.times(self.target, nodes));
-        let along = along.unwrap_or(f32x4::ZERO);
-        let near = within(self.limit, along, nodes.lanes);
-        if near.0 == 0 {
-            return near;
-        }
-        let times = self.times(nodes).fast_max(along);
-        within(self.limit, times, nodes.lanes)
     }
 }

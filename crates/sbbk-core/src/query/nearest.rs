@@ -11,11 +11,11 @@ use crate::contact::contact;
 use crate::leaf::LeafTest;
 use crate::simd::{Spread, dot};
 use crate::traverse::{
-    Compare, NodeLanes, NodePair, PairFrame, Placement, SignedGaps, Toward, expand, leaves_at,
+    Compare, NodeLanes, NodePair, PairFrame, Placement, Toward, expand, leaves_at,
 };
 use crate::tree::{LeafBatch, Tree};
 
-use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::seek::{BestNormal, FOUND, LowerBound, Pruned, SearchScratch, seek};
 use super::triangles::{FoundPair, TrianglePair};
 
 /// The pair of triangles to find.
@@ -74,7 +74,7 @@ pub(super) fn search(
     let mut frame = PairFrame::new(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
     // Bounds are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
-    let gaps = &mut SignedGaps { frame: &mut frame, limit: best as f32, toward: None };
+    let gaps = &mut Gaps { frame: &mut frame, bound: SignedGaps, limit: best as f32, normal: None };
     let mut search =
         NearestSearch { trees, placement, test, goal, excluded, best, found: None, count: 0 };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
@@ -93,13 +93,15 @@ fn some_distance((tree1, tree2): (&Tree, &Tree), placement: &Placement) -> f64 {
     distance * (1.0 + 1.0e-9)
 }
 
-impl Bounds for SignedGaps<'_> {
-    fn limit(&self) -> f32 {
-        self.limit
-    }
+/// The signed distance of nodes, negative where their volumes overlap.
+struct SignedGaps;
 
-    fn are_beyond(&mut self, trees: (&Tree, &Tree), nodes: NodePair) -> bool {
-        self.toward.as_mut().is_some_and(|toward| toward.are_nodes_beyond(trees, nodes))
+type Gaps<'a> = Pruned<'a, SignedGaps>;
+
+impl LowerBound for SignedGaps {
+    #[inline(always)]
+    fn of(&self, frame: &mut PairFrame, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
+        frame.signed_gaps(nodes)
     }
 }
 
@@ -118,12 +120,7 @@ struct NearestSearch<'a> {
 }
 
 impl NearestSearch<'_> {
-    fn triangles(
-        &mut self,
-        gaps: &mut SignedGaps<'_>,
-        one: (u32, [Vec3; 3]),
-        two: (u32, [Vec3; 3]),
-    ) {
+    fn triangles(&mut self, gaps: &mut Gaps<'_>, one: (u32, [Vec3; 3]), two: (u32, [Vec3; 3])) {
         if gaps.limit == FOUND {
             return;
         }
@@ -151,20 +148,17 @@ impl NearestSearch<'_> {
 
     /// Looks along the normal of the best pair from now on. Rare, and long: kept out of the way.
     #[inline(never)]
-    fn look_along(&self, gaps: &mut SignedGaps<'_>, normal: DVec3) {
+    fn look_along(&self, gaps: &mut Gaps<'_>, normal: DVec3) {
         // The normal of crossing triangles tells nothing about other pairs.
-        gaps.toward = None;
-        if self.best > 0.0 {
-            gaps.toward = Toward::new(gaps.frame, normal, self.best);
-        }
-        if gaps.toward.as_ref().is_some_and(|toward| toward.are_meshes_beyond(self.trees)) {
+        let toward = Toward::new(gaps.frame, normal, self.best).filter(|_| self.best > 0.0);
+        gaps.normal = toward.map(|toward| BestNormal { toward, target: 0.0, scale: 1.0 });
+        if gaps.are_meshes_beyond(self.trees) {
             gaps.limit = FOUND;
         }
     }
 
-    fn leaves(&mut self, gaps: &mut SignedGaps<'_>, batch1: &LeafBatch, batch2: &LeafBatch) {
-        let are_beyond = |toward: &mut Toward| toward.are_leaves_beyond(batch1, batch2);
-        if gaps.toward.as_mut().is_some_and(are_beyond) {
+    fn leaves(&mut self, gaps: &mut Gaps<'_>, batch1: &LeafBatch, batch2: &LeafBatch) {
+        if gaps.are_leaves_beyond(batch1, batch2) {
             return;
         }
         let test = self.test.within(gaps.limit);

@@ -6,7 +6,12 @@
 
 use std::ops::ControlFlow;
 
-use crate::traverse::{Compare, DescentScratch, NodePair, expand, leaves_at};
+use wide::f32x4;
+
+use crate::simd::Spread;
+use crate::traverse::{
+    Compare, DescentScratch, NodeLanes, NodePair, PairFrame, Toward, expand, leaves_at,
+};
 use crate::tree::{LeafBatch, Tree};
 
 /// Memory of a query, kept by the caller. After a few queries nothing is allocated, but heights of
@@ -29,6 +34,80 @@ pub(super) trait Bounds: Compare<Key = f32> {
     /// matter.
     fn are_beyond(&mut self, _trees: (&Tree, &Tree), _nodes: NodePair) -> bool {
         false
+    }
+}
+
+/// A lower bound of a search.
+pub(super) trait LowerBound {
+    /// Returns the bounds of pairs of nodes, lane by lane. A bound that is NaN excludes nothing.
+    fn of(&self, frame: &mut PairFrame, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4;
+}
+
+/// Keeps pairs of nodes that may be below a limit, which the best pair of triangles so far gives.
+pub(super) struct Pruned<'a, B> {
+    pub(super) frame: &'a mut PairFrame,
+    pub(super) bound: B,
+    /// Finite, or an infinity.
+    pub(super) limit: f32,
+    /// The normal of the best pair of triangles, to try first.
+    pub(super) normal: Option<BestNormal>,
+}
+
+/// A normal along which gaps bound other pairs.
+pub(super) struct BestNormal {
+    pub(super) toward: Toward,
+    /// The gap whose bound is zero, and the bound for each unit beyond.
+    pub(super) target: f32,
+    pub(super) scale: f32,
+}
+
+impl BestNormal {
+    #[inline(always)]
+    fn bounds(&self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
+        (self.toward.gaps(nodes) - f32x4::splat(self.target)) * f32x4::splat(self.scale)
+    }
+}
+
+impl<B> Pruned<'_, B> {
+    /// Returns true if the normal tells that no triangles of two leaves matter.
+    #[inline(always)]
+    pub(super) fn are_leaves_beyond(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) -> bool {
+        self.normal.as_mut().is_some_and(|best| best.toward.are_leaves_beyond(batch1, batch2))
+    }
+
+    /// Returns true if the normal tells that nothing else in two meshes matters.
+    #[inline(always)]
+    pub(super) fn are_meshes_beyond(&self, trees: (&Tree, &Tree)) -> bool {
+        self.normal.as_ref().is_some_and(|best| best.toward.are_meshes_beyond(trees))
+    }
+}
+
+impl<B: LowerBound> Bounds for Pruned<'_, B> {
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    fn are_beyond(&mut self, trees: (&Tree, &Tree), nodes: NodePair) -> bool {
+        self.normal.as_mut().is_some_and(|best| best.toward.are_nodes_beyond(trees, nodes))
+    }
+}
+
+impl<B: LowerBound> Compare for Pruned<'_, B> {
+    type Key = f32;
+
+    #[inline(always)]
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
+        self.frame.counts.aabb_tests += u64::from(nodes.lanes.count_ones());
+        let along = self.normal.as_ref().map(|best| best.bounds(nodes));
+        let along = along.unwrap_or(f32x4::splat(f32::NEG_INFINITY));
+        // A bound that overflowed to NaN is kept, as it excludes nothing.
+        let limit = f32x4::splat(self.limit);
+        let within = |bounds: f32x4| nodes.lanes & !bounds.simd_gt(limit).to_bitmask();
+        if within(along) == 0 {
+            return (0, [0.0; 4]);
+        }
+        let bounds = self.bound.of(self.frame, nodes).fast_max(along);
+        (within(bounds), bounds.to_array())
     }
 }
 

@@ -16,29 +16,10 @@
 
 use wide::f32x4;
 
-use super::expand::Compare;
 use super::frame::PairFrame;
 use super::side::NodeLanes;
-use super::toward::Toward;
 use crate::simd::{Spread, V3, dot, each, largest};
 use crate::volumes::rounding::gamma;
-
-/// Keeps pairs of nodes that may be nearer than a limit. The key is a lower bound of their signed
-/// distance, negative where their volumes overlap.
-pub(crate) struct SignedGaps<'a> {
-    pub(crate) frame: &'a mut PairFrame,
-    pub(crate) limit: f32,
-    /// A direction to try first.
-    pub(crate) toward: Option<Toward>,
-}
-
-/// Returns the lanes whose bounds are within a limit, and the bounds. A bound that overflowed to
-/// NaN is kept, as it excludes nothing.
-#[inline(always)]
-pub(crate) fn within(limit: f32, bounds: f32x4, lanes: u32) -> (u32, [f32; 4]) {
-    let beyond = bounds.simd_gt(f32x4::splat(limit)).to_bitmask();
-    (lanes & !beyond, bounds.to_array())
-}
 
 /// Combined bounds along axes.
 #[derive(Copy, Clone)]
@@ -97,22 +78,5 @@ impl PairFrame {
         let in_frame2 = self.along2(nodes, in_frame1.offset, rounding2);
         let unit2 = f32x4::splat(self.placement.rotation.x_axis.length() as f32);
         Bound::of_axes(in_frame1.gaps(), f32x4::ONE).or(Bound::of_axes(in_frame2.gaps(), unit2))
-    }
-}
-
-impl Compare for SignedGaps<'_> {
-    type Key = f32;
-
-    #[inline(always)]
-    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
-        let along = self.toward.as_ref().map(|toward| toward.gaps(nodes));
-        let along = along.unwrap_or(f32x4::splat(f32::NEG_INFINITY));
-        self.frame.counts.aabb_tests += u64::from(nodes.lanes.count_ones());
-        let near = within(self.limit, along, nodes.lanes);
-        if near.0 == 0 {
-            return near;
-        }
-        let gaps = self.frame.signed_gaps(nodes).fast_max(along);
-        within(self.limit, gaps, nodes.lanes)
     }
 }

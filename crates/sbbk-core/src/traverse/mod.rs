@@ -28,7 +28,6 @@ pub use expand::NodePair;
 pub(crate) use expand::{Compare, Opening, Sides, expand, leaves_at};
 pub(crate) use frame::Along;
 pub use frame::PairFrame;
-pub(crate) use gaps::{SignedGaps, within};
 pub(crate) use overlap::{OrderedOverlap, Overlap};
 pub use placement::Placement;
 pub(crate) use side::NodeLanes;
