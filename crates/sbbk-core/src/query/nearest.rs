@@ -52,20 +52,16 @@ pub fn deepest(
     search(trees, placement, limit, Goal::Deepest, &[], scratch).0
 }
 
-/// Searches all pairs of triangles except those in `excluded`, which is sorted. Returns the pair,
-/// and how many pairs of nodes and of triangles were compared.
+/// Searches all pairs of triangles at most `best` apart, except those in `excluded`, which is
+/// sorted. Returns the pair, and how many pairs of nodes and of triangles were compared.
 pub(super) fn search(
     trees: (&Tree, &Tree),
     placement: Placement,
-    limit: f64,
+    best: f64,
     goal: Goal,
     excluded: &[[u32; 2]],
     scratch: &mut SearchScratch,
 ) -> (Option<FoundPair>, [u64; 2]) {
-    // The triangles of any two vertices may be excluded.
-    let some = if excluded.is_empty() { some_distance(trees, &placement) } else { f64::INFINITY };
-    // Unlike `min`, this keeps a limit that is NaN, which admits nothing.
-    let best = if some < limit { some } else { limit };
     // Unlike `best < 0`, this rejects NaN.
     let admits = best >= 0.0;
     if !admits || !placement.is_finite() {
@@ -84,13 +80,6 @@ pub(super) fn search(
     }
     seek(trees, gaps, scratch, |gaps, leaf1, leaf2| search.leaves(gaps, leaf1, leaf2));
     (search.found, [gaps.frame.counts.aabb_tests, search.count])
-}
-
-/// The distance of two vertices: the least is not above it.
-fn some_distance((tree1, tree2): (&Tree, &Tree), placement: &Placement) -> f64 {
-    let [vertex1, vertex2] = [tree1, tree2].map(|tree| tree.leaf(0).corners(0)[0]);
-    let distance = placement.to_frame1(vertex2, vertex1).length();
-    distance * (1.0 + 1.0e-9)
 }
 
 /// The signed distance of nodes, negative where their volumes overlap.
