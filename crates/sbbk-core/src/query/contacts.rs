@@ -1,11 +1,14 @@
 //! All contacts of two meshes, or any one.
 
+use wide::f32x4;
+
 use crate::leaf::LeafTest;
-use crate::traverse::{OrderedOverlap, PairFrame, Placement, descend};
+use crate::simd::Spread;
+use crate::traverse::{NodeLanes, PairFrame, Placement, descend};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 
-use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::seek::{FOUND, LowerBound, Pruned, SearchScratch, seek};
 use super::triangles::FoundPair;
 
 /// Calls `found` for each pair of triangles at a distance of at most `margin`, in units of frame 1.
@@ -61,7 +64,7 @@ pub fn meeting(
     }
     let mut frame = PairFrame::new(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
-    let mut overlap = OrderedOverlap { frame: &mut frame, limit: f32::INFINITY };
+    let mut overlap = Pruned { frame: &mut frame, bound: Overlaps, limit: 0.0, normal: None };
     let mut found = None;
     seek(trees, &mut overlap, scratch, |overlap, batch1, batch2| {
         test.survivors(batch1, batch2, |lane1, lane2| {
@@ -77,8 +80,12 @@ pub fn meeting(
     found
 }
 
-impl Bounds for OrderedOverlap<'_> {
-    fn limit(&self) -> f32 {
-        self.limit
+/// Minus the overlap of nodes.
+struct Overlaps;
+
+impl LowerBound for Overlaps {
+    #[inline(always)]
+    fn of(&self, frame: &mut PairFrame, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
+        frame.overlaps(nodes)
     }
 }

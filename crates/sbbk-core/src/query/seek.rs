@@ -25,18 +25,6 @@ pub struct SearchScratch {
 /// The limit that ends a search.
 pub(super) const FOUND: f32 = f32::NEG_INFINITY;
 
-/// Lower bounds of pairs of nodes, and what they are compared with.
-pub(super) trait Bounds: Compare<Key = f32> {
-    /// Pairs with a bound above this cannot matter. [`FOUND`] ends the search.
-    fn limit(&self) -> f32;
-
-    /// Returns true if a second look, which may take longer, tells that a pair of nodes cannot
-    /// matter.
-    fn are_beyond(&mut self, _trees: (&Tree, &Tree), _nodes: NodePair) -> bool {
-        false
-    }
-}
-
 /// A lower bound of a search.
 pub(super) trait LowerBound {
     /// Returns the bounds of pairs of nodes, lane by lane. A bound that is NaN excludes nothing.
@@ -47,7 +35,7 @@ pub(super) trait LowerBound {
 pub(super) struct Pruned<'a, B> {
     pub(super) frame: &'a mut PairFrame,
     pub(super) bound: B,
-    /// Finite, or an infinity.
+    /// Pairs with a bound above this cannot matter. [`FOUND`] ends the search.
     pub(super) limit: f32,
     /// The normal of the best pair of triangles, to try first.
     pub(super) normal: Option<BestNormal>,
@@ -75,20 +63,16 @@ impl<B> Pruned<'_, B> {
         self.normal.as_mut().is_some_and(|best| best.toward.are_leaves_beyond(batch1, batch2))
     }
 
+    /// Returns true if a second look, which may take longer, tells that no pair below two nodes
+    /// matters.
+    fn are_nodes_beyond(&mut self, trees: (&Tree, &Tree), nodes: NodePair) -> bool {
+        self.normal.as_mut().is_some_and(|best| best.toward.are_nodes_beyond(trees, nodes))
+    }
+
     /// Returns true if the normal tells that nothing else in two meshes matters.
     #[inline(always)]
     pub(super) fn are_meshes_beyond(&self, trees: (&Tree, &Tree)) -> bool {
         self.normal.as_ref().is_some_and(|best| best.toward.are_meshes_beyond(trees))
-    }
-}
-
-impl<B: LowerBound> Bounds for Pruned<'_, B> {
-    fn limit(&self) -> f32 {
-        self.limit
-    }
-
-    fn are_beyond(&mut self, trees: (&Tree, &Tree), nodes: NodePair) -> bool {
-        self.normal.as_mut().is_some_and(|best| best.toward.are_nodes_beyond(trees, nodes))
     }
 }
 
@@ -112,25 +96,25 @@ impl<B: LowerBound> Compare for Pruned<'_, B> {
 }
 
 /// Goes through all pairs of leaves that may matter. `leaves` may lower the limit.
-pub(super) fn seek<B: Bounds>(
+pub(super) fn seek<B: LowerBound>(
     trees: (&Tree, &Tree),
-    bounds: &mut B,
+    pruned: &mut Pruned<'_, B>,
     scratch: &mut SearchScratch,
-    mut leaves: impl FnMut(&mut B, &LeafBatch, &LeafBatch),
+    mut leaves: impl FnMut(&mut Pruned<'_, B>, &LeafBatch, &LeafBatch),
 ) {
     let roots = (f32::NEG_INFINITY, NodePair::ROOTS);
     best_first(&mut scratch.stack, roots, |key, slots, stack| {
-        if bounds.limit() == FOUND {
+        if pruned.limit == FOUND {
             return ControlFlow::Break(());
         }
         // A bound that is NaN prunes nothing.
-        if key > bounds.limit() || bounds.are_beyond(trees, slots) {
+        if key > pruned.limit || pruned.are_nodes_beyond(trees, slots) {
             return ControlFlow::Continue(());
         }
         if let Some((leaf1, leaf2)) = leaves_at(trees, slots) {
-            leaves(bounds, leaf1, leaf2);
+            leaves(pruned, leaf1, leaf2);
         } else {
-            expand(trees, slots, bounds, |slots, key| stack.push((key, slots)));
+            expand(trees, slots, pruned, |slots, key| stack.push((key, slots)));
         }
         ControlFlow::Continue(())
     });

@@ -28,7 +28,7 @@ pub use expand::NodePair;
 pub(crate) use expand::{Compare, Opening, Sides, expand, leaves_at};
 pub(crate) use frame::Along;
 pub use frame::PairFrame;
-pub(crate) use overlap::{OrderedOverlap, Overlap};
+pub(crate) use overlap::Overlap;
 pub use placement::Placement;
 pub(crate) use side::NodeLanes;
 pub use slack::{MovingBody, Slack, SlackLimits, SlackPlan};

@@ -5,7 +5,7 @@ use wide::f32x4;
 use super::expand::Compare;
 use super::frame::PairFrame;
 use super::side::NodeLanes;
-use crate::simd::{Spread, largest};
+use crate::simd::{Spread, bits, largest};
 
 impl PairFrame {
     /// Bit k: lane k's boxes come within the margin on the six face axes of both.
@@ -18,6 +18,26 @@ impl PairFrame {
         }
         let in_frame2 = self.along2(nodes, in_frame1.offset, self.slack[1]);
         (meets & in_frame2.meet()).to_bitmask()
+    }
+
+    /// Minus the least overlap of the boxes in each lane along their face axes, with the margin.
+    /// Positive if the volumes do not come within the margin. May be NaN if a number overflows.
+    #[inline(always)]
+    pub(crate) fn overlaps(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
+        let meeting = |gaps: f32x4| nodes.lanes & !gaps.simd_gt(f32x4::ZERO).to_bitmask();
+        let in_frame1 = self.along1(nodes, self.slack[0]);
+        let gaps1 = largest(in_frame1.gaps());
+        if meeting(gaps1) == 0 {
+            return gaps1;
+        }
+        let in_frame2 = self.along2(nodes, in_frame1.offset, self.slack[1]);
+        let gaps = gaps1.fast_max(largest(in_frame2.gaps()));
+        let candidates = meeting(gaps);
+        let Some(kdops) = nodes.kdops.as_ref().filter(|_| candidates != 0) else { return gaps };
+        let apart = candidates & !self.correspondence().kdops_meet(kdops, candidates);
+        let mut gaps = gaps.to_array();
+        bits(apart).for_each(|lane| gaps[lane] = f32::INFINITY);
+        f32x4::new(gaps)
     }
 }
 
@@ -38,39 +58,6 @@ impl Compare for Overlap<'_> {
                 (frame.correspondence().kdops_meet(kdops, meeting), [(); 4])
             }
             _ => (meeting, [(); 4]),
-        }
-    }
-}
-
-/// Keeps pairs of nodes whose volumes come within the margin. The key is minus the least overlap of
-/// the boxes along their face axes.
-pub(crate) struct OrderedOverlap<'a> {
-    pub(crate) frame: &'a mut PairFrame,
-    /// Larger keys do not matter to a search.
-    pub(crate) limit: f32,
-}
-
-impl Compare for OrderedOverlap<'_> {
-    type Key = f32;
-
-    #[inline(always)]
-    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
-        let frame = &mut *self.frame;
-        // A gap that overflowed to NaN is kept.
-        let meeting = |gap: f32x4| nodes.lanes & !gap.simd_gt(f32x4::ZERO).to_bitmask();
-        let in_frame1 = frame.along1(nodes, frame.slack[0]);
-        let gap1 = largest(in_frame1.gaps());
-        if meeting(gap1) == 0 {
-            return (0, [0.0; 4]);
-        }
-        let in_frame2 = frame.along2(nodes, in_frame1.offset, frame.slack[1]);
-        let gap = gap1.fast_max(largest(in_frame2.gaps()));
-        let meeting = meeting(gap);
-        match &nodes.kdops {
-            Some(kdops) if meeting != 0 => {
-                (frame.correspondence().kdops_meet(kdops, meeting), gap.to_array())
-            }
-            _ => (meeting, gap.to_array()),
         }
     }
 }
