@@ -191,8 +191,6 @@ fn near_leaves<'a>(
 struct Centres<'a>(&'a PairFrame);
 
 impl Compare for Centres<'_> {
-    type Key = f32;
-
     #[inline(always)]
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
         let offset = self.0.along1(nodes, f32x4::ZERO).offset;

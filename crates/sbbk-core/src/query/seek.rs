@@ -77,8 +77,6 @@ impl<B> Pruned<'_, B> {
 }
 
 impl<B: LowerBound> Compare for Pruned<'_, B> {
-    type Key = f32;
-
     #[inline(always)]
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
         self.frame.counts.aabb_tests += u64::from(nodes.lanes.count_ones());

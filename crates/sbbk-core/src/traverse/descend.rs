@@ -62,7 +62,7 @@ pub fn begin_descent(
             pairs.push(pair);
         } else {
             leaves = 0;
-            expand(trees, pair, &mut Overlap(frame), |pair, ()| pairs.push(pair));
+            expand(trees, pair, &mut Overlap(frame), |pair, _| pairs.push(pair));
         }
     }
     pairs.drain(..first);
@@ -84,7 +84,7 @@ pub fn descend_from(
             frame.counts.leaf_pairs += 1;
             visit(leaf1, leaf2);
         } else {
-            expand(trees, pair, &mut Overlap(frame), |pair, ()| stack.push(pair));
+            expand(trees, pair, &mut Overlap(frame), |pair, _| stack.push(pair));
         }
     }
 }

@@ -83,7 +83,7 @@ impl Opening {
         (tree1, tree2): (&Tree, &Tree),
         lanes: u32,
         compare: &mut C,
-    ) -> (u32, [C::Key; 4]) {
+    ) -> (u32, [f32; 4]) {
         let (one, two) = (tree1.children(self.nodes.0), tree2.children(self.nodes.1));
         let same = Same(self.same_lane);
         match self.sides {
@@ -96,12 +96,8 @@ impl Opening {
 
 /// A comparison of the children of two nodes, up to four pairs at a time.
 pub(crate) trait Compare {
-    /// A value computed for each pair.
-    type Key: Copy;
-
-    /// Returns a mask of the lanes whose pairs pass, and the key of each lane.
-    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>)
-    -> (u32, [Self::Key; 4]);
+    /// Returns a mask of the lanes whose pairs pass, and a key for each lane.
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]);
 }
 
 /// Compares the pairs of children and calls `push` with those that pass.
@@ -110,7 +106,7 @@ pub(crate) fn expand<C: Compare>(
     trees: (&Tree, &Tree),
     pair: NodePair,
     compare: &mut C,
-    mut push: impl FnMut(NodePair, C::Key),
+    mut push: impl FnMut(NodePair, f32),
 ) {
     let opening = Opening::of(trees, pair);
     let (mask, keys) = opening.compare(trees, opening.lanes, compare);

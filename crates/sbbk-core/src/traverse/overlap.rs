@@ -42,22 +42,19 @@ impl PairFrame {
 }
 
 /// Keeps the children whose volumes come within the margin. Compares boxes first, then k-DOPs if
-/// both sides have them.
+/// both sides have them. There are no keys.
 pub(crate) struct Overlap<'a>(pub(crate) &'a mut PairFrame);
 
 impl Compare for Overlap<'_> {
-    type Key = ();
-
     #[inline(always)]
-    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [(); 4]) {
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
         let Self(frame) = self;
         frame.counts.aabb_tests += u64::from(nodes.lanes.count_ones());
         let meeting = frame.boxes_meet(nodes) & nodes.lanes;
-        match &nodes.kdops {
-            Some(kdops) if meeting != 0 => {
-                (frame.correspondence().kdops_meet(kdops, meeting), [(); 4])
-            }
-            _ => (meeting, [(); 4]),
-        }
+        let meeting = match &nodes.kdops {
+            Some(kdops) if meeting != 0 => frame.correspondence().kdops_meet(kdops, meeting),
+            _ => meeting,
+        };
+        (meeting, [0.0; 4])
     }
 }
