@@ -39,9 +39,9 @@ impl Results {
 impl fmt::Display for Results {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "VERDICT: {}\n\n{}", self.verdict, self.environment)?;
-        let csv = self.csv();
-        tables(self.study, &csv).iter().try_for_each(|table| write!(f, "\n{table}"))?;
-        write!(f, "{}", tables::picture(self.study, &csv))?;
+        let numbers = output::numbers(&self.rows);
+        tables(self.study, &numbers).iter().try_for_each(|table| write!(f, "\n{table}"))?;
+        write!(f, "{}", tables::picture(self.study, &numbers))?;
         let mut notes = self.notes.iter();
         notes.try_for_each(|note| write!(f, "\n{note}"))
     }
