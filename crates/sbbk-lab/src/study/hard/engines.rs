@@ -12,7 +12,7 @@ use rapier3d::parry::mass_properties::MassProperties;
 
 use super::Column;
 use super::depth::Depths;
-use super::figures::Gain;
+use super::figures::greatest_rise;
 use super::heaps::{FLOOR, above_floor};
 use super::kit::{Form, Kit};
 
@@ -225,13 +225,11 @@ impl EnginePile {
         let weight = f64::from(self.mass) * f64::from(GRAVITY);
         let heights = self.poses.iter().map(|pose| f64::from(pose.translation.y));
         let start = weight * heights.sum::<f64>() / self.poses.len() as f64;
-        let mut gain = Gain::default();
-        gain.see(start);
-        for step in 0..STEPS {
+        let energies = (0..STEPS).map(|step| {
             let height = run.mean(step, |head| f64::from(head[1]));
-            gain.see(run.mean(step, |head| self.kinetic(head)) + weight * height);
-        }
-        gain.most / start
+            run.mean(step, |head| self.kinetic(head)) + weight * height
+        });
+        greatest_rise(std::iter::once(start).chain(energies)) / start
     }
 
     /// Kinetic energy of a head.

@@ -50,27 +50,15 @@ impl Figures {
     }
 }
 
-/// Watches a quantity that should never rise.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Gain {
-    least: f64,
-    /// The greatest rise over an earlier value so far.
-    pub most: f64,
-}
-
-impl Default for Gain {
-    fn default() -> Self {
-        Self { least: f64::INFINITY, most: 0.0 }
+/// The greatest rise over an earlier number; NaN if any is NaN.
+pub(super) fn greatest_rise(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+    for value in values {
+        least = least.min(value);
+        let rise = value - least;
+        most = if most.is_nan() || rise <= most { most } else { rise };
     }
-}
-
-impl Gain {
-    pub fn see(&mut self, value: f64) {
-        self.least = self.least.min(value);
-        let rise = value - self.least;
-        // NaN stays.
-        self.most = if self.most.is_nan() || rise <= self.most { self.most } else { rise };
-    }
+    most
 }
 
 /// The largest number; NaN if any is NaN, 0 without numbers.
@@ -145,12 +133,7 @@ pub(super) fn notes(settings: &Settings, runs: &[Run]) -> Vec<String> {
 /// Would catch a NaN that later numbers hide, and a fall that counts as a rise.
 #[test]
 fn nan_stays() {
-    let gain = |values: &[f64]| {
-        let mut gain = Gain::default();
-        values.iter().for_each(|&value| gain.see(value));
-        gain.most
-    };
-    assert_eq!(gain(&[3.0, 1.0, 2.0, 0.5]), 1.0);
-    assert!(gain(&[1.0, f64::NAN, 2.0]).is_nan());
+    assert_eq!(greatest_rise([3.0, 1.0, 2.0, 0.5]), 1.0);
+    assert!(greatest_rise([1.0, f64::NAN, 2.0]).is_nan());
     assert!(largest([1.0, f32::NAN, 2.0]).is_nan() && largest([f32::NAN, 2.0]).is_nan());
 }

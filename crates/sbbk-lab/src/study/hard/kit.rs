@@ -13,7 +13,7 @@ use rapier3d::parry::utils::Array2;
 
 pub(super) use super::Trial;
 pub(super) use super::depth::{Depths, touching_pairs};
-pub(super) use super::figures::{Figures, Gain, largest};
+pub(super) use super::figures::{Figures, greatest_rise, largest};
 pub(super) use crate::prelude::*;
 
 /// A dispatcher, and the shapes of the bodies.
@@ -152,7 +152,9 @@ pub(super) struct World {
 
 /// Measurements of the steps of a world.
 pub(super) struct Watched {
-    /// Greatest rise of the energy, as a share of the energy at the start.
+    /// Greatest rise of the energy.
+    pub rise: f64,
+    /// The same, as a share of the energy at the start.
     pub gain: f64,
     /// Median time of the measured steps, in milliseconds.
     pub step_time: f64,
@@ -197,13 +199,12 @@ impl World {
         full: usize,
         mut seen: impl FnMut(&Self, usize),
     ) -> Watched {
-        let start = self.energy();
-        let (mut gain, mut times, mut points) = (Gain::default(), Vec::new(), 0.0);
+        let (mut energies, mut times, mut points) = (vec![self.energy()], Vec::new(), 0.0);
         for step in 1..=steps {
             let clock = Instant::now();
             self.step();
             let time = 1e3 * clock.elapsed().as_secs_f64();
-            gain.see(self.energy());
+            energies.push(self.energy());
             if step > full {
                 times.push(time);
                 points += solver_points(self) as f64 / (steps - full) as f64;
@@ -211,18 +212,13 @@ impl World {
             seen(self, step);
         }
         let step_time = Summary::of(times).map_or(f64::NAN, |times| times.median);
-        Watched { gain: gain.most / start, step_time, points }
+        let (start, rise) = (energies[0], greatest_rise(energies));
+        Watched { rise, gain: rise / start, step_time, points }
     }
 
     /// Runs for some steps. Returns the greatest rise of the energy.
     pub fn rise(&mut self, steps: usize) -> f64 {
-        let mut gain = Gain::default();
-        gain.see(self.energy());
-        for _ in 0..steps {
-            self.step();
-            gain.see(self.energy());
-        }
-        gain.most
+        self.watch(steps, steps, |_, _| ()).rise
     }
 
     /// Runs for some steps. Returns the highest speed of a body after any of them.
