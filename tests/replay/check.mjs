@@ -85,12 +85,6 @@ async function lookAt(tab, name, width, height) {
   await tab.mouse.up();
   await tab.waitForTimeout(400);
   assert.notDeepEqual(await eye(), before);
-
-  if (await tab.isVisible("#part")) {
-    await tab.click("#part");
-    await tab.waitForTimeout(600);
-    await tab.screenshot({ path: join(folder, `${name}-part.png`) });
-  }
 }
 
 // Projects the places of the run, and looks at the screenshot there.

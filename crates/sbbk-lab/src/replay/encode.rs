@@ -10,7 +10,7 @@ use base64::prelude::BASE64_STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use super::recorder::{Difference, STRIDE};
+use super::recorder::STRIDE;
 use super::shapes::{levels, surface};
 
 /// Steps of a quaternion's parts.
@@ -25,7 +25,6 @@ struct Replay<'a> {
     /// Each shape, fine and coarse.
     shapes: Vec<[Surface; 2]>,
     runs: Vec<Run<'a>>,
-    difference: Option<Difference>,
 }
 
 #[derive(Serialize)]
@@ -69,7 +68,6 @@ pub fn encode(runs: &[Recorder]) -> String {
         stride: STRIDE,
         runs: encoded.collect(),
         shapes: surfaces.iter().map(|surface| levels(surface).map(Surface::new)).collect(),
-        difference: runs.get(1).and_then(|other| Difference::first(&runs[0], other)),
     };
     let mut out = GzEncoder::new(Vec::new(), Compression::best());
     let written = serde_json::to_writer(&mut out, &replay).map_err(Into::into);

@@ -34,11 +34,10 @@ void main() {
 }`;
 const POINT_FRAGMENT = `#version 300 es
 precision mediump float;
-uniform vec3 colour; uniform float hole; out vec4 seen;
+out vec4 seen;
 void main() {
-  float r = 2.0 * length(gl_PointCoord - 0.5);
-  if (r > 1.0 || r < hole) discard;
-  seen = vec4(colour, 1.0);
+  if (length(gl_PointCoord - 0.5) > 0.5) discard;
+  seen = vec4(0.85, 0.0, 0.1, 1.0);
 }`;
 
 // Least cosine between faces that look like one smooth surface.
@@ -110,7 +109,7 @@ class Drawing {
     const sun = { value: [0.35, 0.8, 0.5].map((k, _, v) => k / Math.hypot(...v)) };
     const bodies = [false, this.gl.BACK].map((cullFace) => new OGL.Program(this.gl,
       { vertex: BODY_VERTEX, fragment: BODY_FRAGMENT, uniforms: { sun }, cullFace }));
-    this.runs = data.runs.map((run) => ({ run, groups: this.groups(run, bodies), ...this.points(run) }));
+    this.runs = data.runs.map((run) => ({ run, groups: this.groups(run, bodies), contacts: this.points(run) }));
     this.resize();
     this.look();
   }
@@ -147,26 +146,16 @@ class Drawing {
     });
   }
 
-  // Contacts of a frame, and the mark of the first difference.
+  // Contacts of a frame.
   points(run) {
     const most = Math.max(1, ...run.firsts.slice(1).map((end, frame) => end - run.firsts[frame]));
-    const scale = Math.min(window.devicePixelRatio, 2);
-    const make = (count, size, colour, hole) => {
-      const program = new OGL.Program(this.gl, {
-        vertex: POINT_VERTEX, fragment: POINT_FRAGMENT, depthTest: false, depthWrite: false,
-        uniforms: { size: { value: size * scale }, colour: { value: colour }, hole: { value: hole } },
-      });
-      const position = { size: 3, data: new Float32Array(3 * count) };
-      const geometry = new OGL.Geometry(this.gl, { position });
-      return new OGL.Mesh(this.gl, { mode: this.gl.POINTS, geometry, program, frustumCulled: false });
-    };
-    const mark = make(1, 34, [0.85, 0, 0.1], 0.75);
-    if (this.data.difference) {
-      const { position } = mark.geometry.attributes;
-      position.data.set(this.data.difference.point);
-      position.needsUpdate = true;
-    }
-    return { contacts: make(most, 4, [0.85, 0, 0.1], 0), mark };
+    const program = new OGL.Program(this.gl, {
+      vertex: POINT_VERTEX, fragment: POINT_FRAGMENT, depthTest: false, depthWrite: false,
+      uniforms: { size: { value: 4 * Math.min(window.devicePixelRatio, 2) } },
+    });
+    const position = { size: 3, data: new Float32Array(3 * most) };
+    const geometry = new OGL.Geometry(this.gl, { position });
+    return new OGL.Mesh(this.gl, { mode: this.gl.POINTS, geometry, program, frustumCulled: false });
   }
 
   // The camera that sees nearly all moving bodies, some times of the run together, from this side.
@@ -235,7 +224,7 @@ class Drawing {
     this.renderer.state.depthMask = true;
     gl.clearColor(...BACKGROUND, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.runs.forEach(({ run, groups, contacts, mark }, index) => {
+    this.runs.forEach(({ run, groups, contacts }, index) => {
       const { x, y, width, height } = views[index];
       gl.viewport(x, y, width, height);
       for (const { objects, place, turn, meshes } of groups) {
@@ -256,8 +245,6 @@ class Drawing {
       position.needsUpdate = true;
       contacts.geometry.setDrawRange(0, end - first);
       if (end > first) contacts.draw({ camera });
-      const step = data.difference?.step ?? -Infinity;
-      if (Math.abs(time * data.stride - step) < 12) mark.draw({ camera });
     });
   }
 }

@@ -25,14 +25,6 @@ const times = data.runs.map((_, index) => {
   find("times").append(time);
   return time;
 });
-if (data.difference) {
-  const { step, pair, distances } = data.difference;
-  const told = distances.map((distance, index) => `${data.runs[index].name} ` +
-    (distance === null ? "none" : `${distance <= 0 ? "depth" : "distance"} ${Math.abs(distance).toFixed(4)}`));
-  find("difference").textContent =
-    `First contact that differs: step ${step}, bodies ${pair.join(" and ")}: ${told.join(", ")}`;
-}
-find("part").hidden = !data.difference;
 
 // Places of the moving bodies of a run; null for those that are gone.
 function places(index, frame) {
@@ -142,7 +134,6 @@ find("play").onclick = () => {
   play(!state.isPlaying);
 };
 find("slider").oninput = (event) => { play(false); seek(Number(event.target.value)); };
-find("part").onclick = () => { play(false); seek(data.difference.step / data.stride); };
 find("contacts").onchange = (event) => {
   drawing.showsContacts = event.target.checked;
   state.isStale = true;
