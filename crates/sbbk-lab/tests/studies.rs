@@ -141,7 +141,7 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
 fn random_scenes_hold_with_rapiers_own_shapes() {
     let columns = vec![Column::Stock, Column::Sbbk, Column::Control];
     let settings = Settings { columns, ..Settings::default() };
-    let options = Options { seed: 1, unit: None, iterations: None, no_sweeps: false };
+    let options = Options { seed: 1, unit: None };
     let without = [Family::Chains, Family::Gears, Family::Bowls, Family::Grippers];
     let mut families = Family::value_variants().to_vec();
     families.retain(|family| !without.contains(family));

@@ -65,7 +65,7 @@ impl Family {
     }
 }
 
-/// Settings of all scenes of a study. Chains keep their own iterations.
+/// Settings of all scenes of a study.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Options {
     /// Seed of the random scenes
@@ -74,12 +74,6 @@ pub struct Options {
     /// Rapier's length unit in random scenes; the size of the bodies if not given
     #[arg(long)]
     pub unit: Option<f32>,
-    /// Iterations of Rapier's solver in random scenes; its default if not given
-    #[arg(long)]
-    pub iterations: Option<usize>,
-    /// Keeps Rapier from sweeping fast convex bodies in random scenes
-    #[arg(long)]
-    pub no_sweeps: bool,
 }
 
 /// Extent of the study.
@@ -127,12 +121,9 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> io::Result<Results> {
     let rows: Vec<Row> = rows.chain(broken).collect();
     let mut notes = figures::notes(&plan.settings, &runs);
     if !notes.is_empty() {
-        let Options { seed, unit, iterations, no_sweeps } = plan.options;
+        let Options { seed, unit } = plan.options;
         let unit = unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
-        let iterations = iterations.map(|count| format!(" --iterations {count}"));
-        let sweeps = if no_sweeps { " --no-sweeps" } else { "" };
-        let set = unit + &iterations.unwrap_or_default() + sweeps;
-        notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{set} --verbose"));
+        notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{unit} --verbose"));
     }
     Ok(Results { verdict: verdict(plan, &rows), notes, ..Results::new("random_scenes", rows) })
 }

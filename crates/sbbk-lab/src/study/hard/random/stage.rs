@@ -2,7 +2,6 @@
 
 use rapier3d::parry::mass_properties::MassProperties;
 
-use super::Options;
 use super::draw::{Draw, Part};
 use crate::study::hard::kit::*;
 
@@ -68,10 +67,8 @@ impl<'a> Stage<'a> {
         let mut world = kit.world();
         world.gravity = -size * draw.gravity * Vec3::Y;
         let parameters = &mut world.integration_parameters;
-        let Options { unit, iterations, no_sweeps, .. } = draw.options;
-        (parameters.length_unit, parameters.dt) = (unit.unwrap_or(size), draw.dt);
-        parameters.num_solver_iterations = iterations.unwrap_or(parameters.num_solver_iterations);
-        parameters.max_ccd_substeps *= usize::from(!no_sweeps);
+        let length_unit = draw.options.unit.unwrap_or(size);
+        (parameters.length_unit, parameters.dt) = (length_unit, draw.dt);
         let mut insert = |body: &Body| insert(&mut world, kit, body, size);
         let mut handles: Vec<_> = match draw.is_reversed {
             false => bodies.iter().map(insert).collect(),
