@@ -122,7 +122,7 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
     check(&results, &[]);
     let passed = |column: Column, scene: &str| -> Vec<bool> {
         let rows = results.rows.iter().filter(|row| row.study == "hard scenes");
-        let rows = rows.filter(|row| row.is("backend", column));
+        let rows = rows.filter(|row| row.backend == column.to_string());
         let rows = rows.filter(|row| row.keys["scene"].contains(scene));
         rows.map(|row| row.count("passed") == 1).collect()
     };
@@ -150,7 +150,9 @@ fn random_scenes_hold_with_rapiers_own_shapes() {
     check(&results, &[]);
     let all = |column: Column, count: &str| {
         let rows = results.rows.iter().filter(|row| row.study == "random scenes");
-        rows.filter(|row| row.is("backend", column)).map(|row| row.count(count)).sum::<u64>()
+        rows.filter(|row| row.backend == column.to_string())
+            .map(|row| row.count(count))
+            .sum::<u64>()
     };
     assert_eq!(all(Column::Control, "held"), all(Column::Control, "scenes"), "{results}");
     assert!(all(Column::Stock, "held") < all(Column::Sbbk, "held"), "{results}");

@@ -50,12 +50,6 @@ impl Row {
         self.values.extend(value.as_f64().map(|number| (path.to_owned(), number)));
     }
 
-    /// True if the backend or a key has this name.
-    pub fn is(&self, key: &str, name: impl ToString) -> bool {
-        let found = if key == "backend" { Some(&self.backend) } else { self.keys.get(key) };
-        found == Some(&name.to_string())
-    }
-
     /// The number at a path, or NaN.
     pub fn number(&self, path: &str) -> f64 {
         self.values.get(path).copied().unwrap_or(f64::NAN)
