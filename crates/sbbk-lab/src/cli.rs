@@ -1,8 +1,7 @@
 //! Arguments, output and errors of the examples.
 
 use crate::prelude::*;
-use std::error::Error;
-use std::fmt::{self, Debug, Display};
+use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
 use clap::{CommandFactory, FromArgMatches, Parser};
@@ -84,22 +83,7 @@ pub fn print(text: impl Display) -> io::Result<()> {
 }
 
 /// What `main` returns.
-pub type Outcome = Result<(), Failure>;
-
-/// An error, of which the message is shown.
-pub struct Failure(Box<dyn Error>);
-
-impl<E: Error + 'static> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self(Box::new(error))
-    }
-}
-
-impl Debug for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        Display::fmt(&self.0, f)
-    }
-}
+pub type Outcome = anyhow::Result<()>;
 
 /// Implements `Display` for choices of arguments, by their names there.
 macro_rules! shown_by_name {
