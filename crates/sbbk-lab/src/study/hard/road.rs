@@ -116,15 +116,12 @@ impl Rider {
 
     /// Means over all starts, and the highest bump.
     fn rides(self, kit: &Kit, floor: &ColliderBuilder) -> Ride {
-        let (mut random, count) = (seeded(), self.starts as f32);
+        let mut random = seeded();
         let rides = (0..self.starts).map(|_| self.ride(kit, self.start(&mut random), floor));
-        let sum = rides.reduce(|sum, ride| Ride {
-            path: sum.path + ride.path,
-            speed: sum.speed + ride.speed,
-            bump: largest([sum.bump, ride.bump]),
-        });
-        let sum = sum.expect("there is a start");
-        Ride { path: sum.path / count, speed: sum.speed / count, ..sum }
+        let rides: Vec<Ride> = rides.collect();
+        let mean = |of: fn(&Ride) -> f32| rides.iter().map(of).sum::<f32>() / rides.len() as f32;
+        let bump = largest(rides.iter().map(|ride| ride.bump));
+        Ride { path: mean(|ride| ride.path), speed: mean(|ride| ride.speed), bump }
     }
 
     fn ride(self, kit: &Kit, start: RigidBodyBuilder, floor: &ColliderBuilder) -> Ride {
