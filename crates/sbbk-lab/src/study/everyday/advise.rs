@@ -31,6 +31,10 @@ const NOISE: f64 = 1.1;
 /// Sizes in units for which Rapier's default `length_unit` is right.
 const USUAL_SIZES: [f32; 2] = [0.3, 30.0];
 
+/// What a subject is used as; dynamic bodies are number `BODY`.
+const USES: [&str; 3] = ["terrain", "bodies", "sensors"];
+const BODY: usize = 1;
+
 /// Measurements of one mesh or robot, displayed as its name and three lines.
 #[derive(Clone, Debug)]
 pub struct Advice {
@@ -187,34 +191,25 @@ impl Advice {
             .map(|[stock, sbbk]| stock.number("detection.mean") / sbbk.number("detection.mean"))
     }
 
-    /// Settings for a terrain, for bodies, and for sensors.
-    fn settings(&self) -> [String; 3] {
-        let mut mesh: Vec<String> = Vec::new();
-        if self.is_robot {
-            mesh.push("load it with `trimesh_flags = TriMeshFlags::empty()`, as here".into());
-        }
-        if self.wants_trees {
-            mesh.push("call `prepare_shape` at load time".into());
-        }
-        if self.kind == SurfaceKind::InsideOut {
-            mesh.push(
-                "turn its triangles unless it is a room, as its normals point inwards".into(),
-            );
-        }
-        let mut dynamic = mesh.clone();
+    /// Settings for one use.
+    fn settings(&self, index: usize) -> String {
+        let length_unit = format!("`length_unit = {}`", two_digits(self.size));
         let [small, large] = USUAL_SIZES;
-        if !(small..large).contains(&self.size) {
-            dynamic.push(format!("`length_unit = {}`", two_digits(self.size)));
-        }
-        [&mesh, &dynamic, &mesh].map(|settings| match settings.is_empty() {
-            true => "nothing".to_owned(),
-            false => settings.join("; "),
-        })
+        let inside_out = "turn its triangles unless it is a room, as its normals point inwards";
+        let settings = [
+            (self.is_robot, "load it with `trimesh_flags = TriMeshFlags::empty()`, as here"),
+            (self.wants_trees, "call `prepare_shape` at load time"),
+            (self.kind == SurfaceKind::InsideOut, inside_out),
+            (index == BODY && !(small..large).contains(&self.size), &length_unit),
+        ];
+        let settings = settings.into_iter().filter(|(is_wanted, _)| *is_wanted);
+        let settings: Vec<&str> = settings.map(|(_, setting)| setting).collect();
+        if settings.is_empty() { "nothing".to_owned() } else { settings.join("; ") }
     }
 
     /// The line of one use.
-    fn line(&self, index: usize, settings: &str) -> String {
-        let use_ = ["terrain", "bodies", "sensors"][index];
+    fn line(&self, index: usize) -> String {
+        let (use_, settings) = (USES[index], self.settings(index));
         let [stock, sbbk] = &self.rows[index];
         let speed = self.speeds()[index];
         let verdict = match speed {
@@ -255,7 +250,6 @@ impl fmt::Display for Advice {
         };
         let Self { name, triangles, size, .. } = self;
         write!(f, "{name}: {triangles} triangles, {size:.3} units, {kind}")?;
-        let mut lines = self.settings().into_iter().enumerate();
-        lines.try_for_each(|(index, settings)| write!(f, "\n{}", self.line(index, &settings)))
+        (0..USES.len()).try_for_each(|index| write!(f, "\n{}", self.line(index)))
     }
 }
