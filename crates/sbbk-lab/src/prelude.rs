@@ -3,9 +3,7 @@
 pub(crate) use crate::backend::{Backend, Dispatcher, Memory};
 pub(crate) use crate::mesh;
 pub(crate) use crate::mesh::Mesh;
-pub(crate) use crate::metrics::{
-    Errors, Sequence, Summary, Truth, geometric_mean, sample, solver_points,
-};
+pub(crate) use crate::metrics::{Errors, Sequence, Summary, Truth, sample, solver_points};
 pub(crate) use crate::parallel;
 pub(crate) use crate::progress::Progress;
 pub(crate) use crate::replay;

@@ -6,7 +6,8 @@
 //! * FUNCTION, which may be left out, joins the numbers of all rows. `sum` and `max` speak for
 //!   themselves. `ms` is the largest of numbers in microseconds. `wrong` counts wrong contacts.
 //!   `ratio` divides stock's numbers by the backend's and takes the geometric mean. `least` takes
-//!   the smallest ratio. `boxes` is `ratio` for the backend `aabb-only`.
+//!   the smallest ratio. `boxes` is `ratio` for the backend `aabb-only`. `count` counts the numbers,
+//!   `zeros` those that are 0, and `slower` those in microseconds that are above stock's.
 //! * BACKEND: without it, the one that the header gives to the column.
 //! * SCENE: parts, joined by ` & `, of `STUDY, KEY VALUE, KEY VALUE`; each must end before a comma.
 //! * PATH: quantity and statistic, such as `step.median`.
@@ -19,7 +20,11 @@ use super::row::WRONG;
 use crate::metrics::geometric_mean;
 
 const SPECS: &str = include_str!("../../../../docs/data/tables.txt");
-const FUNCTIONS: [&str; 7] = ["sum", "max", "wrong", "ratio", "boxes", "least", "ms"];
+const FUNCTIONS: [&str; 10] =
+    ["sum", "max", "wrong", "ratio", "boxes", "least", "ms", "count", "zeros", "slower"];
+/// A time is above stock's beyond this factor and this many microseconds.
+const NOISE: f64 = 1.05;
+const IGNORED: f64 = 1.0;
 /// What stands for a number that was not measured.
 const MISSING: &str = "–";
 
@@ -225,6 +230,10 @@ impl Data {
         let is_backend = |name: &str| self.0.iter().any(|number| number.backend == name);
         let own = scene.split_once(": ").filter(|(name, _)| is_backend(name));
         let (backend, scene) = own.unwrap_or((backend, scene));
+        self.value(function, backend, scene, path)
+    }
+
+    fn value(&self, function: &str, backend: &str, scene: &str, path: &str) -> Option<String> {
         let sum = |path: &str| self.find(backend, scene, path).into_values().sum::<f64>();
         if function == "wrong" {
             let wrong = WRONG.map(|kind| sum(&format!("{path}.{kind}"))).into_iter().sum();
@@ -233,18 +242,26 @@ impl Data {
         }
         let found = self.find(backend, scene, path);
         let values = || found.values().copied();
-        let ratios = |base| {
+        let pairs = |base| {
             let base = self.find(base, scene, path);
-            let ratio = |(scene, value): (&&str, &f64)| Some(base.get(scene)? / value);
-            found.iter().filter_map(ratio).collect::<Vec<f64>>()
+            let pair = |(scene, value): (&&str, &f64)| Some([*base.get(scene)?, *value]);
+            found.iter().filter_map(pair).collect::<Vec<[f64; 2]>>()
         };
+        let ratios = |base| pairs(base).into_iter().map(|[base, value]| base / value);
+        let is_slower = |[base, value]: &&[f64; 2]| *value > (NOISE * base).max(base + IGNORED);
         let number = match function {
             "sum" if !found.is_empty() => return Some(thousands(sum(path))),
+            "count" if !found.is_empty() => return Some(thousands(found.len() as f64)),
+            "zeros" if !found.is_empty() => {
+                let zeros = values().filter(|number| *number == 0.0).count();
+                return Some(format!("{zeros} of {}", found.len()));
+            }
+            "slower" => return Some(pairs("stock").iter().filter(is_slower).count().to_string()),
             "max" => values().reduce(f64::max),
             "ms" => values().reduce(f64::max).map(|number| 1e-3 * number),
             "ratio" => geometric_mean(ratios("stock")),
             "boxes" => geometric_mean(ratios("aabb-only")),
-            "least" => ratios("stock").into_iter().reduce(f64::min),
+            "least" => ratios("stock").reduce(f64::min),
             _ => values().next().filter(|_| found.len() == 1),
         }?;
         Some(if number.abs() >= 1000.0 { thousands(number) } else { three_digits(number) })

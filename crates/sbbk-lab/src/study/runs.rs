@@ -55,11 +55,7 @@ pub fn pile(scene: &MonkeyPile, plan: &RunPlan, progress: &Progress) -> Vec<Row>
 
 /// Runs one pile as a study of its own.
 pub fn one_pile(scene: &MonkeyPile, plan: &RunPlan, progress: &Progress) -> Results {
-    let rows = pile(scene, plan, progress);
-    let steps = rows.iter().map(|row| format!("{} {:.2}", row.backend, row.number("step.median")));
-    let steps = steps.collect::<Vec<_>>().join(", ");
-    let verdict = format!("{}, ms a whole step: {steps}", scene.name());
-    Results { verdict, ..Results::new("pile", rows) }
+    Results::new("pile", pile(scene, plan, progress))
 }
 
 /// Runs a scene on all backends step by step in turns, so that a slow spell of the machine slows

@@ -130,36 +130,7 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Results {
     for group in &plan.groups {
         worlds.group(*group);
     }
-    Results { verdict: verdict(&worlds.rows), ..Results::new("everyday", worlds.rows) }
-}
-
-/// A median of SBBK is slower above this factor and this many microseconds.
-const NOISE: f64 = 1.05;
-const IGNORED: f64 = 1.0;
-
-/// Main finding: ratios of the medians of worlds, and losses. Rows are pairs of stock and SBBK.
-fn verdict(rows: &[Row]) -> String {
-    let rows = rows.iter().filter(|row| row.study != QUERIES).collect::<Vec<&Row>>();
-    let (worlds, _) = rows.as_chunks::<2>();
-    let ratios = |path| worlds.iter().map(move |[a, b]| a.number(path) / b.number(path));
-    let mean = |path| geometric_mean(ratios(path)).unwrap_or(f64::NAN);
-    let is_slower = |[stock, sbbk]: &&[&Row; 2]| {
-        let [stock, sbbk] = [stock, sbbk].map(|row| row.number("detection.median"));
-        sbbk > (NOISE * stock).max(stock + IGNORED)
-    };
-    let wrong = |side: usize| worlds.iter().map(|rows| rows[side].wrong("judged")).sum::<u64>();
-    format!(
-        "in {} worlds collision detection is {:.2} times as fast as stock's and whole steps {:.2} \
-         times (geometric means of medians; least {:.2}); {} worlds are slower than stock; wrong \
-         contacts of those judged: SBBK {}, stock {}",
-        worlds.len(),
-        mean("detection.median"),
-        mean("step.median"),
-        ratios("detection.median").fold(f64::INFINITY, f64::min),
-        worlds.iter().filter(is_slower).count(),
-        wrong(1),
-        wrong(0),
-    )
+    Results::new("everyday", worlds.rows)
 }
 
 struct Worlds<'a> {

@@ -144,14 +144,8 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> io::Result<Results> {
         let row = row.with("passed", usize::from(run.wrong().is_none()));
         [row].into_iter().chain(run.rows("hard scenes: figures"))
     });
-    let failed = plan.settings.columns.iter().map(|&column| {
-        let of = runs.iter().filter(|run| run.column == column);
-        let failed = of.clone().filter(|run| run.wrong().is_some());
-        format!("{column} {} of {}", failed.count(), of.count())
-    });
-    let verdict = format!("scenes that fail: {}", failed.collect::<Vec<_>>().join(", "));
     let notes = figures::notes(&plan.settings, &runs);
-    Ok(Results { verdict, notes, ..Results::new("hard_scenes", rows.collect()) })
+    Ok(Results { notes, ..Results::new("hard_scenes", rows.collect()) })
 }
 
 /// Runs scenes of one kind in all columns. The first scene of all is recorded, if there is to be a

@@ -118,14 +118,14 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> io::Result<Results> {
     });
     let broken = runs.iter().filter(|run| run.column == Column::Sbbk && run.wrong().is_some());
     let broken = broken.flat_map(|run| run.rows("random scenes: broken"));
-    let rows: Vec<Row> = rows.chain(broken).collect();
+    let rows = rows.chain(broken);
     let mut notes = figures::notes(&plan.settings, &runs);
     if !notes.is_empty() {
         let Options { seed, unit } = plan.options;
         let unit = unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
         notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{unit} --verbose"));
     }
-    Ok(Results { verdict: verdict(plan, &rows), notes, ..Results::new("random_scenes", rows) })
+    Ok(Results { notes, ..Results::new("random_scenes", rows.collect()) })
 }
 
 /// Counts of a family in a column: scenes, scenes that hold, and failures of SBBK. `lost` counts
@@ -146,25 +146,4 @@ fn counted(family: &str, column: Column, runs: &[Run]) -> Row {
     let row = Row::new("random scenes", column).key("family", family);
     let row = row.with("scenes", of.len()).with("held", held).with("lost", lost);
     row.with("shared", shared.count())
-}
-
-fn verdict(plan: &RandomPlan, rows: &[Row]) -> String {
-    let sum = |column: &Column, path: &str| -> u64 {
-        rows.iter().filter(|row| row.is("backend", column)).map(|row| row.count(path)).sum()
-    };
-    let columns = plan.settings.columns.iter().filter(|column| **column != Column::Control);
-    let held = columns.map(|column| format!("{column} {}", sum(column, "held")));
-    let held = held.collect::<Vec<_>>().join(", ");
-    let scenes = plan.numbers.len() * plan.families.len();
-    let [lost, shared] = ["lost", "shared"].map(|path| sum(&Column::Sbbk, path));
-    let control = match sum(&Column::Control, "scenes") {
-        0 => String::new(),
-        of => format!(
-            "; rapier's convex shapes hold {} of {of}, and break {shared} that sbbk breaks, too",
-            sum(&Column::Control, "held")
-        ),
-    };
-    format!(
-        "of {scenes} random scenes hold: {held}; stock or flag hold {lost} that sbbk breaks{control}"
-    )
 }
