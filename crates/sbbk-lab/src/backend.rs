@@ -2,11 +2,16 @@
 
 use crate::prelude::*;
 use std::ops::Deref;
-use std::sync::Arc;
 
 use rapier_integration::{ContactDetail, ContactSet, PreparedTree, SbbkConfig, SbbkDispatcher};
-use rapier3d::parry::query::{ContactManifoldsWorkspace, DefaultQueryDispatcher};
+use rapier3d::geometry::{ContactData, ContactManifoldData};
+use rapier3d::parry::query::{
+    ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
+};
 use sbbk_core::tree::LayerPlan;
+
+/// The dispatchers that Rapier takes.
+pub type SharedDispatcher = Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>>;
 
 /// The dispatcher of a backend.
 pub struct Dispatcher {
@@ -25,14 +30,6 @@ impl Dispatcher {
         let Some(sbbk) = &self.sbbk else { return };
         let prepare = |shape| sbbk.prepare_shape(shape).ok()?;
         self.trees.extend(shapes.into_iter().filter_map(prepare));
-    }
-
-    /// Makes a world ask this dispatcher.
-    pub fn serve(&self, world: &mut PhysicsWorld) {
-        match &self.sbbk {
-            Some(sbbk) => world.narrow_phase.set_query_dispatcher(sbbk.clone()),
-            None => world.narrow_phase.set_query_dispatcher(DefaultQueryDispatcher),
-        }
     }
 }
 
@@ -90,11 +87,14 @@ impl Backend {
         Dispatcher { backend: self, shared, sbbk, trees: Vec::new() }
     }
 
-    /// Installs a fresh dispatcher in a world, with the trees of all its meshes.
+    /// Installs a fresh dispatcher in a world with Rapier's default, with the trees of all its
+    /// meshes.
     pub fn install(self, world: &mut PhysicsWorld) -> Dispatcher {
         let mut dispatcher = self.dispatcher();
         dispatcher.prepare(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
-        dispatcher.serve(world);
+        if let Some(sbbk) = &dispatcher.sbbk {
+            world.narrow_phase.set_query_dispatcher(sbbk.clone());
+        }
         dispatcher
     }
 }

@@ -64,12 +64,12 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The mesh-mesh pairs proposed by the broad phase of a world, at their poses now. Rapier may
-    /// recycle the contacts of some.
-    pub fn captured(world: &PhysicsWorld) -> Vec<Self> {
+    /// The mesh-mesh pairs proposed by the broad phase of a world, at their poses now, and their
+    /// colliders.
+    pub fn captured(world: &PhysicsWorld) -> (Vec<Self>, Vec<[ColliderHandle; 2]>) {
         let pairs = world.contact_pairs().map(|pair| [pair.collider1, pair.collider2]);
-        let pairs = pairs.map(|pair| Self::of(world, pair));
-        pairs.filter(|pair| pair.shapes.iter().all(|s| s.as_trimesh().is_some())).collect()
+        let pairs = pairs.map(|pair| (Self::of(world, pair), pair));
+        pairs.filter(|(pair, _)| pair.shapes.iter().all(|s| s.as_trimesh().is_some())).unzip()
     }
 
     /// Two colliders at their poses now.

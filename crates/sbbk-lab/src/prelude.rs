@@ -1,9 +1,9 @@
 //! Names that most modules use.
 
-pub(crate) use crate::backend::{Backend, Dispatcher, Memory};
+pub(crate) use crate::backend::{Backend, Dispatcher, Memory, SharedDispatcher};
 pub(crate) use crate::mesh;
 pub(crate) use crate::mesh::Mesh;
-pub(crate) use crate::metrics::{Errors, Sequence, Summary, Truth, sample, solver_points};
+pub(crate) use crate::metrics::{Errors, Sequence, Summary, sample, solver_points};
 pub(crate) use crate::parallel;
 pub(crate) use crate::progress::Progress;
 pub(crate) use crate::replay;
@@ -19,9 +19,9 @@ pub(crate) use rapier3d::geometry::{
 };
 pub(crate) use rapier3d::math::{Pose, Real};
 pub(crate) use rapier3d::pipeline::PhysicsWorld;
-pub(crate) use sbbk_testkit::probe::{SharedDispatcher, shape_address};
 pub(crate) use serde::Serialize;
 pub(crate) use std::collections::HashMap;
 pub(crate) use std::io;
 pub(crate) use std::path::{Path, PathBuf};
+pub(crate) use std::sync::Arc;
 pub(crate) use std::time::{Duration, Instant};

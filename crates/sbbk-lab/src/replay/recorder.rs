@@ -73,7 +73,7 @@ impl Recorder {
             let body = it.parent().and_then(|body| world.bodies.get(body));
             let is_fixed = body.is_none_or(|body| body.is_fixed());
             let shape = it.shared_shape();
-            let is_shape = |known: &SharedShape| shape_address(&**known) == shape_address(&**shape);
+            let is_shape = |known: &SharedShape| Arc::ptr_eq(&known.0, &shape.0);
             let shape = self.shapes.iter().position(is_shape).unwrap_or_else(|| {
                 self.shapes.push(shape.clone());
                 self.shapes.len() - 1

@@ -5,8 +5,6 @@
 
 use super::pair::times;
 use crate::prelude::*;
-use sbbk_testkit::probe::{Answer, Recording};
-use std::sync::{Arc, Mutex, PoisonError};
 
 /// Pairs at the same poses that are judged at most.
 const JUDGED: usize = 200;
@@ -93,7 +91,7 @@ pub(super) struct Run {
     /// Errors of first queries for all contacts of triangles. The pairs are sampled from the broad
     /// phase.
     fresh: Errors,
-    /// Errors of the answers that Rapier got: pairs sampled from those that it did not recycle.
+    /// Errors of the answers that Rapier got about the same pairs.
     updated: Errors,
     /// The pairs before the last judged step, for asking other backends.
     pairs: Vec<Sequence>,
@@ -108,27 +106,26 @@ impl Run {
         Self { built, dispatcher, times, fresh, updated, pairs }
     }
 
-    /// Steps once, and judges contacts at the poses at the start of the step, where Rapier asks.
+    /// Steps once, and judges contacts at the poses at the start of the step, where Rapier asks. It
+    /// recycles none in this step.
     fn judged_step(&mut self, limit: usize) {
         let world = &mut self.built.world;
-        self.pairs = Sequence::captured(world);
+        let colliders;
+        (self.pairs, colliders) = Sequence::captured(world);
         let some: Vec<Sequence> = sample(&self.pairs, limit).cloned().collect();
         let dispatcher =
             self.dispatcher.backend.per_triangle(some.iter().flat_map(|pair| &pair.shapes));
         let fresh = Sequence::errors(&some, &[dispatcher], |_| true);
         self.fresh += fresh[0].without_normals();
 
-        let answers = Arc::new(Mutex::new(Vec::new()));
-        let inner = self.dispatcher.shared.clone();
-        world.narrow_phase.set_query_dispatcher(Recording { inner, answers: answers.clone() });
+        let recycles = world.integration_parameters.contact_recycling;
+        world.integration_parameters.contact_recycling = false;
         world.step();
-        self.dispatcher.serve(world);
-        let answers = answers.lock().unwrap_or_else(PoisonError::into_inner);
-        let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-        let shapes: HashMap<usize, &SharedShape> =
-            shapes.map(|shape| (shape_address(&**shape), shape)).collect();
-        for Answer { shapes: pair, pos12, prediction, manifolds } in sample(&answers, limit) {
-            let truth = Truth::of(pair.map(|address| shapes[&address]), pos12, *prediction);
+        world.integration_parameters.contact_recycling = recycles;
+        for (pair, [one, two]) in some.iter().zip(sample(&colliders, limit)) {
+            let found = world.narrow_phase.contact_pair(*one, *two);
+            let manifolds = found.map_or(&[][..], |pair| pair.manifolds());
+            let truth = pair.truth(0);
             let errors = match self.dispatcher.backend {
                 Backend::Stock => truth.judge(manifolds),
                 _ => truth.judge_surfaces(manifolds),

@@ -154,10 +154,10 @@ impl Side {
 
 /// Parry's own memory of the meshes of a world, each counted once.
 fn mesh_bytes(world: &PhysicsWorld) -> usize {
-    let shapes = world.colliders.iter().map(|(_, collider)| collider.shape());
-    let meshes = shapes.filter_map(|shape| Some((shape_address(shape), shape.as_trimesh()?)));
-    let meshes: std::collections::BTreeMap<usize, usize> =
-        meshes.map(|(address, mesh)| (address, mesh.total_memory_size())).collect();
+    let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
+    let meshes = shapes.filter_map(|shape| Some((Arc::as_ptr(&shape.0), shape.as_trimesh()?)));
+    let meshes: HashMap<*const (), usize> =
+        meshes.map(|(address, mesh)| (address.cast(), mesh.total_memory_size())).collect();
     meshes.into_values().sum()
 }
 
