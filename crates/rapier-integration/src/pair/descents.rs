@@ -28,7 +28,7 @@ use sbbk_core::tree::{BATCH, LeafBatch, Tree};
 use super::field::Field;
 use super::pose::PairPose;
 use super::query::Candidate;
-use super::shapes::{DISTANT, Hint, NEAR_NORMAL, TriangleShape, TriangleShapes};
+use super::shapes::{DISTANT, Hint, NEAR_NORMAL, ShapeView, TriangleShape, TriangleShapes};
 use crate::mesh::MeshView;
 
 /// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body
@@ -115,14 +115,13 @@ impl TriangleShapes<'_> {
     fn are_few(&self) -> bool {
         let PairPose { pos12, prediction, .. } = *self.pose;
         let poses = [pos12, pos12.inverse()];
-        if let [TriangleShape::Mesh(one), TriangleShape::Mesh(two)] = &self.shapes {
-            return are_few_of_meshes([one.view, two.view], poses, prediction);
+        if let [ShapeView::Mesh(one), ShapeView::Mesh(two)] = [0, 1].map(|i| self[i].view) {
+            return are_few_of_meshes([one, two], poses, prediction);
         }
-        let shapes = (&self[self.larger], &self[1 - self.larger]);
-        let (TriangleShape::Field(field), TriangleShape::Mesh(mesh)) = shapes else { return true };
-        let root = mesh.view.placed_root(&poses[self.larger], prediction);
-        let under = field.field.count_under(&root);
-        mesh.view.mesh.indices().len() as f64 * under <= MOST_PAIRS as f64
+        let views = [self.larger, 1 - self.larger].map(|i| self[i].view);
+        let [ShapeView::Field(field), ShapeView::Mesh(mesh)] = views else { return true };
+        let root = mesh.placed_root(&poses[self.larger], prediction);
+        mesh.mesh.indices().len() as f64 * field.count_under(&root) <= MOST_PAIRS as f64
     }
 
     /// Returns a test for triangles beside each other. Their contacts are no local minima while
@@ -139,7 +138,7 @@ impl TriangleShapes<'_> {
     /// Returns true if contacts beside a triangle of shape `i`, by [lateral
     /// culling](Self::lateral_culling), are no local minima. False for height fields.
     pub(super) fn bends_little(&self, i: usize, triangle: u32) -> bool {
-        let Some(surface) = self[i].surface() else { return false };
+        let Some(surface) = &self[i].surface else { return false };
         surface.facets().cones(triangle).least_square(false) >= NEAR_NORMAL * NEAR_NORMAL
     }
 
@@ -152,16 +151,16 @@ impl TriangleShapes<'_> {
         found: &mut Vec<Candidate<Hint>>,
     ) {
         std::mem::swap(found, &mut descent.found);
-        match (&self.shapes, self.trees) {
-            (_, Some(trees)) => self.descend_trees(trees.into(), margin, start, descent),
-            ([TriangleShape::Mesh(one), TriangleShape::Mesh(two)], None) => {
-                self.descend_bvhs([one.view, two.view], margin, near, descent);
+        match ([0, 1].map(|i| self[i].view), self[0].tree.zip(self[1].tree)) {
+            (_, Some(trees)) => self.descend_trees(trees, margin, start, descent),
+            ([ShapeView::Mesh(one), ShapeView::Mesh(two)], None) => {
+                self.descend_bvhs([one, two], margin, near, descent);
             }
-            ([TriangleShape::Field(field), TriangleShape::Mesh(mesh)], None)
-            | ([TriangleShape::Mesh(mesh), TriangleShape::Field(field)], None) => {
-                self.descend_field(field.field, mesh.view, margin, near, descent);
+            ([ShapeView::Field(field), ShapeView::Mesh(mesh)], None)
+            | ([ShapeView::Mesh(mesh), ShapeView::Field(field)], None) => {
+                self.descend_field(*field, mesh, margin, near, descent);
             }
-            ([TriangleShape::Field(_), TriangleShape::Field(_)], None) => {}
+            ([ShapeView::Field(_), ShapeView::Field(_)], None) => {}
         }
         *counts += std::mem::take(&mut descent.counts);
         std::mem::swap(found, &mut descent.found);
@@ -255,7 +254,7 @@ impl TriangleShapes<'_> {
     /// Returns the surfaces that are known by now and have doubles. A descent may leave these out,
     /// as they have no contacts.
     fn doubles(&self) -> [Option<&Surface>; 2] {
-        self.shapes.each_ref().map(|shape| shape.surface()?.with_doubles())
+        self.shapes.each_ref().map(|shape| shape.surface.as_ref()?.with_doubles())
     }
 }
 

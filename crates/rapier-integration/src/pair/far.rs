@@ -125,7 +125,7 @@ impl TriangleShapes<'_> {
         let within = self.pose.prediction;
         for i in 0..2 {
             let mut nearest: Option<TriangleHit> = None;
-            for (half_edge, tip) in self[i].surface().into_iter().flat_map(LazySurface::tips) {
+            for (half_edge, tip) in self[i].surface.iter().flat_map(LazySurface::tips) {
                 let Some(hit) = self.of_point(i, half_edge, tip, within) else { continue };
                 found(hit);
                 self.step(1 - i, &hit, distance(&hit)).into_iter().for_each(&mut found);
@@ -149,7 +149,7 @@ impl TriangleShapes<'_> {
     /// some triangles spread over each mesh. Sides that touch may hide them from walks.
     fn find_ahead(&self, found: &mut impl FnMut(TriangleHit)) {
         for i in 0..2 {
-            let Some(view) = self[i].view() else { continue };
+            let Some(view) = self[i].mesh() else { continue };
             // Few of its triangles would be near.
             if self[i].size_squared() > MUCH_LARGER * self[1 - i].size_squared() {
                 continue;

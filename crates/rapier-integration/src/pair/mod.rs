@@ -28,6 +28,7 @@ pub(crate) use convex::{
 pub(crate) use descents::BvhDescent;
 pub(crate) use field::Field;
 pub(crate) use pose::{MeshPlace, PairPose, ROUNDING, STRETCH};
+pub(crate) use shapes::ShapeView;
 pub use triangle_contacts::TriangleContacts;
-pub(crate) use triangles::{MeshPair, ShapeView};
+pub(crate) use triangles::MeshPair;
 pub(crate) use update::update_manifolds;

@@ -66,8 +66,6 @@ pub(super) type Hint = Option<FeaturePair>;
 pub(crate) struct TriangleShapes<'q> {
     pub(super) pose: &'q PairPose,
     pub(super) shapes: [TriangleShape<'q>; 2],
-    /// Trees of two meshes, if both have one.
-    pub(super) trees: Option<[&'q Tree; 2]>,
     /// 0 if shape 1 is the larger one or a height field, else 1.
     pub(super) larger: usize,
     /// Distance up to which contacts must be local minima; infinite for contacts of each two
@@ -117,12 +115,11 @@ impl TriangleShapes<'_> {
 
     /// Returns the normal cones that contacts of two triangles obey: none for contacts of surfaces.
     #[inline(always)]
-    pub(super) fn cones(&mut self, triangles: [u32; 2]) -> [Option<TrianglePseudoNormals>; 2] {
+    pub(super) fn cones(&self, triangles: [u32; 2]) -> [Option<TrianglePseudoNormals>; 2] {
         if self.has_surface() {
             return [None, None];
         }
-        let [shape1, shape2] = &mut self.shapes;
-        [shape1.cone(triangles[0]), shape2.cone(triangles[1])]
+        [0, 1].map(|i| self[i].cone(triangles[i]))
     }
 
     /// Returns the body whose motion limits how long candidates serve: the smaller one.
@@ -135,7 +132,7 @@ impl TriangleShapes<'_> {
     /// Returns a lower bound of the distance between two meshes, from the ball around the smaller
     /// one, if that is more than `margin`.
     pub(super) fn clearance(&self, margin: Real) -> Option<Real> {
-        let [larger, _] = [self[self.larger].view()?, self[1 - self.larger].view()?];
+        let [larger, _] = [self[self.larger].mesh()?, self[1 - self.larger].mesh()?];
         let Sphere { centre, radius } = self.moving().body.ball;
         let placed = self.pose.in_other(1 - self.larger, centre);
         let offset = self.pose.pos12.translation.abs().max_element();
@@ -201,18 +198,23 @@ pub(super) fn contact_of(
     }
 }
 
-/// A shape made of triangles.
-pub(crate) enum TriangleShape<'q> {
-    Mesh(MeshShape<'q>),
-    Field(FieldShape<'q>),
+/// A shape made of triangles, as a pair has it.
+#[derive(Copy, Clone)]
+pub(crate) enum ShapeView<'a> {
+    Mesh(MeshView<'a>),
+    Field(Field<'a>),
 }
 
-/// A mesh.
-pub(crate) struct MeshShape<'q> {
-    pub(super) view: &'q MeshView<'q>,
-    /// Set for contacts of surfaces.
+/// A shape made of triangles, with what a query knows of it.
+pub(crate) struct TriangleShape<'q> {
+    pub(super) view: &'q ShapeView<'q>,
+    /// Surface of a mesh, for contacts of surfaces.
     pub(super) surface: Option<LazySurface<'q>>,
+    /// Tree of a mesh, for another mesh.
+    pub(super) tree: Option<&'q Tree>,
     pub(super) room: Room,
+    /// Side of the ground of a height field, for contacts of surfaces.
+    pub(super) side: Option<Side>,
 }
 
 /// Tells if a mesh is a room for the other shape, and has no inside.
@@ -226,33 +228,18 @@ pub(crate) enum Room {
     FacingIn,
 }
 
-/// A height field.
-pub(crate) struct FieldShape<'q> {
-    pub(super) field: Field<'q>,
-    /// Side of the ground, for contacts of surfaces.
-    pub(super) side: Option<Side>,
-    /// The last triangle that was asked for its normal cone, and the cone. Contacts of a triangle
-    /// follow each other, and Parry computes the cone from four triangles.
-    pub(super) cone: Option<(u32, Option<TrianglePseudoNormals>)>,
-}
-
 impl<'q> TriangleShape<'q> {
     /// Returns a mesh; `None` for a height field.
-    pub(super) fn view(&self) -> Option<&'q MeshView<'q>> {
-        if let Self::Mesh(mesh) = self { Some(mesh.view) } else { None }
-    }
-
-    /// Returns the surface of a mesh, for contacts of surfaces.
-    pub(super) fn surface(&self) -> Option<&LazySurface<'q>> {
-        if let Self::Mesh(mesh) = self { mesh.surface.as_ref() } else { None }
+    pub(super) fn mesh(&self) -> Option<&'q MeshView<'q>> {
+        if let ShapeView::Mesh(mesh) = self.view { Some(mesh) } else { None }
     }
 
     /// Returns the corners of a triangle; `None` if it does not exist.
     #[inline(always)]
     pub(super) fn corners(&self, triangle: u32) -> Option<[Vector; 3]> {
-        match self {
-            Self::Mesh(mesh) => Some(mesh.view.corners(triangle)),
-            Self::Field(FieldShape { field, .. }) => {
+        match self.view {
+            ShapeView::Mesh(mesh) => Some(mesh.corners(triangle)),
+            ShapeView::Field(field) => {
                 let Triangle { a, b, c } = field.triangle(triangle)?;
                 Some([a, b, c])
             }
@@ -260,90 +247,78 @@ impl<'q> TriangleShape<'q> {
     }
 
     /// Returns the normal cone of a triangle.
-    pub(super) fn cone(&mut self, triangle: u32) -> Option<TrianglePseudoNormals> {
-        let FieldShape { field, cone, .. } = match self {
-            Self::Mesh(mesh) => return mesh.view.mesh.triangle_normal_constraints(triangle),
-            Self::Field(field) => field,
-        };
-        let known = cone.take().filter(|(of, _)| *of == triangle);
-        let known =
-            known.unwrap_or_else(|| (triangle, field.0.triangle_normal_constraints(triangle)));
-        cone.insert(known).1.clone()
+    fn cone(&self, triangle: u32) -> Option<TrianglePseudoNormals> {
+        match self.view {
+            ShapeView::Mesh(mesh) => mesh.mesh.triangle_normal_constraints(triangle),
+            ShapeView::Field(field) => field.0.triangle_normal_constraints(triangle),
+        }
     }
 
     /// Returns the surface around a triangle, for contacts of surfaces.
     #[inline]
     pub(super) fn around(&self, triangle: u32) -> Option<Around<ShapeFacets<'_>>> {
-        match self {
-            Self::Mesh(MeshShape { surface, room, .. }) => {
-                let Around { facets, side } = surface.as_ref()?.around(triangle);
-                let side = match (room, side) {
+        match self.view {
+            ShapeView::Mesh(_) => {
+                let Around { facets, side } = self.surface.as_ref()?.around(triangle);
+                let side = match (self.room, side) {
                     (Room::FacingOut, _) => Side::Sheet,
                     (Room::FacingIn, Side::Turned) => Side::Outer,
                     _ => side,
                 };
                 Some(Around { facets: ShapeFacets::Mesh(facets), side })
             }
-            Self::Field(FieldShape { field, side, .. }) => {
-                Some(Around { facets: ShapeFacets::Field(*field), side: (*side)? })
+            ShapeView::Field(field) => {
+                Some(Around { facets: ShapeFacets::Field(*field), side: self.side? })
             }
         }
     }
 
     /// Returns the sign with which most normals of the shape lead out of it.
     pub(super) fn outward(&self) -> f64 {
-        match self {
-            Self::Mesh(MeshShape { surface: Some(surface), room: Room::No, .. })
-                if surface.kind() == SurfaceKind::InsideOut =>
-            {
-                -1.0
-            }
-            _ => 1.0,
-        }
+        let is_inside_out = |surface: &LazySurface<'_>| surface.kind() == SurfaceKind::InsideOut;
+        let is_turned = self.room == Room::No && self.surface.as_ref().is_some_and(is_inside_out);
+        if is_turned { -1.0 } else { 1.0 }
     }
 
     /// Returns true if the winding of a triangle tells the front of a sheet.
     pub(super) fn has_front(&self, triangle: u32) -> bool {
-        self.surface().is_none_or(|surface| surface.facets().has_front(triangle))
+        self.surface.as_ref().is_none_or(|surface| surface.facets().has_front(triangle))
     }
 
     /// Returns true if the shape has an inside. Only contacts of surfaces ask for it.
     pub(super) fn is_solid(&self) -> bool {
-        match self {
-            Self::Mesh(MeshShape { surface, room, .. }) => {
-                let is_solid = |surface: &LazySurface<'_>| surface.kind() != SurfaceKind::Sheet;
-                *room == Room::No && surface.as_ref().is_some_and(is_solid)
-            }
-            Self::Field(FieldShape { side, .. }) => *side == Some(Side::Outer),
+        match &self.surface {
+            Some(surface) => self.room == Room::No && surface.kind() != SurfaceKind::Sheet,
+            None => self.side == Some(Side::Outer),
         }
     }
 
     /// Returns the box around the shape, in its frame.
     #[inline]
     pub(super) fn bounds(&self) -> Aabb {
-        match self {
-            Self::Mesh(mesh) => *mesh.view.root(),
-            Self::Field(FieldShape { field, .. }) => *field.0.root_aabb(),
+        match self.view {
+            ShapeView::Mesh(mesh) => *mesh.root(),
+            ShapeView::Field(field) => *field.0.root_aabb(),
         }
     }
 
     /// Returns a ball around a mesh; an infinite one for a height field.
     pub(super) fn ball(&self) -> Sphere {
         let infinite = Sphere { centre: Vector::ZERO, radius: Real::INFINITY };
-        self.view().map_or(infinite, MeshView::ball)
+        self.mesh().map_or(infinite, MeshView::ball)
     }
 
     /// Returns the square of half the diagonal of the box around a mesh. A height field counts as
     /// larger than any.
     pub(super) fn size_squared(&self) -> Real {
-        self.view().map_or(Real::INFINITY, MeshView::size_squared)
+        self.mesh().map_or(Real::INFINITY, MeshView::size_squared)
     }
 
     /// Returns the length of a triangle's side, if equal triangles cover the box around the shape.
     pub(super) fn triangle_size(&self) -> Real {
-        let count = match self {
-            Self::Mesh(mesh) => mesh.view.mesh.indices().len(),
-            Self::Field(field) => field.field.triangle_count(),
+        let count = match self.view {
+            ShapeView::Mesh(mesh) => mesh.mesh.indices().len(),
+            ShapeView::Field(field) => field.triangle_count(),
         };
         let Vector { x, y, z } = self.bounds().extents();
         let area = 2.0 * (x * y + y * z + z * x);
@@ -353,18 +328,18 @@ impl<'q> TriangleShape<'q> {
     /// Returns the height of a mesh over the middle of its box along a unit direction; 0 for a
     /// height field.
     pub(super) fn height(&self, direction: Vector) -> Real {
-        self.view().map_or(0.0, |view| view.height(direction, 0.0))
+        self.mesh().map_or(0.0, |mesh| mesh.height(direction, 0.0))
     }
 
     /// Returns the nearest point of the surface, and the cosine between the direction to the point
     /// and the inward normal.
     pub(super) fn nearest(&self, point: Vector) -> Option<(Vector, Real)> {
-        match self {
-            Self::Mesh(MeshShape { surface, .. }) => {
-                let (_, nearest, behind) = surface.as_ref()?.nearest(point)?;
+        match self.view {
+            ShapeView::Mesh(_) => {
+                let (_, nearest, behind) = self.surface.as_ref()?.nearest(point)?;
                 Some((nearest, behind))
             }
-            Self::Field(FieldShape { field, .. }) => field.nearest(point),
+            ShapeView::Field(field) => field.nearest(point),
         }
     }
 
@@ -373,9 +348,9 @@ impl<'q> TriangleShape<'q> {
     /// triangle.
     pub(super) fn exit(&self, ray: &Ray, is_two_way: bool) -> Option<(Real, Vector)> {
         let outward = (!is_two_way).then(|| self.outward());
-        match self {
-            Self::Mesh(mesh) => mesh.view.exit(ray, outward),
-            Self::Field(FieldShape { field, .. }) => {
+        match self.view {
+            ShapeView::Mesh(mesh) => mesh.exit(ray, outward),
+            ShapeView::Field(field) => {
                 // A ray leaves a field once at most.
                 let hit = field.0.cast_local_ray_and_get_normal(ray, Real::MAX, false);
                 let exit = hit.filter(|hit| leaves(hit, outward))?;
@@ -387,7 +362,7 @@ impl<'q> TriangleShape<'q> {
     /// Returns true if a solid ends within a length along a ray that starts in it. The ground below
     /// a height field has no end.
     pub(super) fn ends_within(&self, [start, direction]: [DVec3; 2], length: f64) -> bool {
-        let Some(MeshView { mesh, .. }) = self.view() else { return false };
+        let Some(MeshView { mesh, .. }) = self.mesh() else { return false };
         let ends = [start, start + length * direction].map(|end| end.as_vec3());
         // The box has all points of the ray, as rounding to f32 is monotonic up to one step.
         let segment = Aabb::from_points(ends)
@@ -402,10 +377,8 @@ impl<'q> TriangleShape<'q> {
     /// have the body behind them.
     pub(super) fn may_hold(&self, point: Vector) -> bool {
         let is_inside = |sign: i32| f64::from(sign) * self.outward() > 0.0;
-        match self {
-            Self::Mesh(MeshShape { surface: Some(surface), .. })
-                if surface.kind() != SurfaceKind::Sheet =>
-            {
+        match &self.surface {
+            Some(surface) if surface.kind() != SurfaceKind::Sheet => {
                 surface.winding_sign(point).is_none_or(is_inside)
             }
             _ => self.nearest(point).is_none_or(|(_, behind)| behind >= 0.0),
@@ -424,9 +397,9 @@ impl<'q> TriangleShape<'q> {
     /// Returns the first triangle that a ray meets within a length, the length, and the cosine of
     /// the angle with the normal.
     pub(super) fn first_met(&self, ray: &Ray, within: Real) -> Option<(u32, Real, Real)> {
-        let (triangle, hit) = match self {
-            Self::Mesh(mesh) => first_hit(mesh.view.mesh, ray, within)?,
-            Self::Field(FieldShape { field, .. }) => {
+        let (triangle, hit) = match self.view {
+            ShapeView::Mesh(mesh) => first_hit(mesh.mesh, ray, within)?,
+            ShapeView::Field(field) => {
                 let hit = field.0.cast_local_ray_and_get_normal(ray, within, false)?;
                 let place = ray.point_at(hit.time_of_impact);
                 (field.nearest_triangle(place, within)?, hit)
@@ -438,12 +411,12 @@ impl<'q> TriangleShape<'q> {
     /// Returns the nearest triangle to a point, if that is within a distance. The triangle of a
     /// height field may be another that is near.
     pub(super) fn nearest_triangle(&self, point: Vector, within: Real) -> Option<u32> {
-        match self {
-            Self::Mesh(mesh) => {
-                let nearest = CompositeShapeRef(mesh.view.mesh);
+        match self.view {
+            ShapeView::Mesh(mesh) => {
+                let nearest = CompositeShapeRef(mesh.mesh);
                 Some(nearest.project_local_point(point, within, false)?.0)
             }
-            Self::Field(FieldShape { field, .. }) => field.nearest_triangle(point, within),
+            ShapeView::Field(field) => field.nearest_triangle(point, within),
         }
     }
 }

@@ -17,7 +17,7 @@ use super::islands::Crossing;
 use super::pose::PairPose;
 use super::query::ContactList;
 use super::shapes::{
-    LIP, MeshShape, NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape, TriangleShapes,
+    LIP, NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape, TriangleShapes,
     TriangleSurfaceContact, filter_distance, filter_unit,
 };
 use super::ways::SAME_SIDE;
@@ -156,10 +156,8 @@ impl<'a> HeldMesh<'a> {
     /// Returns `None` unless two meshes have contacts of surfaces.
     pub(super) fn of(shapes: &'a TriangleShapes<'_>) -> Option<Self> {
         let outer = shapes.larger;
-        let held = shapes[1 - outer].view()?;
-        let TriangleShape::Mesh(MeshShape { view: holder, surface, room }) = &shapes[outer] else {
-            return None;
-        };
+        let (held, holder) = (shapes[1 - outer].mesh()?, shapes[outer].mesh()?);
+        let TriangleShape { surface, room, .. } = &shapes[outer];
         let (pose, surface) = (shapes.pose, surface.as_ref()?);
         Some(Self { pose, held, holder, surface, outer, room: *room })
     }

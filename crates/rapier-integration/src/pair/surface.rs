@@ -376,7 +376,7 @@ impl<'a> SurfaceFilter<'a> {
         {
             return None;
         }
-        let lowest = self.shapes[1 - i].view()?.lowest(self.in_frame(1 - i, up).as_vec3());
+        let lowest = self.shapes[1 - i].mesh()?.lowest(self.in_frame(1 - i, up).as_vec3());
         let lowest =
             f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO) - self.local.corners[i][0]);
         (lowest >= -LIP * self.shapes.filter_unit()).then_some([up, -up][i])

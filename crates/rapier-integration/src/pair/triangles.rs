@@ -23,25 +23,24 @@ use parry3d::math::Real;
 use sbbk_core::contact::{ManifoldPoints, TriangleContact, clip, push_closest};
 use sbbk_core::surface::{Side, longest_side};
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
-use sbbk_core::tree::Tree;
 
 use super::borders::meet_borders;
 use super::contours::ContourMemory;
 use super::descents::{ChunkResult, DescentMemory, in_chunks};
-use super::field::{Field, FieldToken};
+use super::field::FieldToken;
 use super::islands::OverlapIslands;
 use super::pose::{Moving, PairPose};
 use super::query::{Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery};
 use super::reduce::{ContactSummary, PatchPlan};
 use super::shapes::{
-    ContactSource, FieldShape, Hint, MeshShape, NEARLY_TOUCHING, Room, TriangleHit, TriangleShape,
+    ContactSource, Hint, NEARLY_TOUCHING, Room, ShapeView, TriangleHit, TriangleShape,
     TriangleShapes, TriangleSurfaceContact, as_cones, contact_of, filter_distance,
 };
 use super::sides::{HeldMesh, InsideTest};
 use super::surface::{SurfaceFilter, Verdict, leans};
 use super::triangle_points::{constrained_normal, write_triangle_points};
 use crate::SbbkConfig;
-use crate::mesh::{Change, LazySurface, MeshView, PairMesh, use_trees};
+use crate::mesh::{Change, LazySurface, PairMesh, use_trees};
 
 /// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until
 /// bodies have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep
@@ -72,13 +71,6 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) pose: &'a PairPose,
     pub(crate) shapes: [ShapeView<'a>; 2],
     pub(crate) config: &'a SbbkConfig,
-}
-
-/// A shape during one query.
-#[derive(Copy, Clone)]
-pub(crate) enum ShapeView<'a> {
-    Mesh(MeshView<'a>),
-    Field(Field<'a>),
 }
 
 /// A pair's knowledge of one of its shapes, which is a mesh or a field.
@@ -127,29 +119,24 @@ impl MeshPair<'_> {
         self.config.wants_surfaces() && self.are_rigid()
     }
 
-    /// Returns a shape with its tree, if there is one. Meshes get trees for each other.
-    fn opened<'q>(
-        &self,
-        shape: &'q ShapeView<'q>,
-        known: &'q mut KnownShape,
-    ) -> (TriangleShape<'q>, Option<&'q Tree>) {
-        let has_surfaces = self.has_surfaces();
-        match shape {
-            ShapeView::Mesh(view) => {
-                let needs_trees = self.needs_trees();
+    /// Begins a query of a shape. Meshes get trees for each other.
+    fn opened<'q>(&self, view: &'q ShapeView<'q>, known: &'q mut KnownShape) -> TriangleShape<'q> {
+        let (has_surfaces, needs_trees) = (self.has_surfaces(), self.needs_trees());
+        let (mut surface, mut side) = (None, None);
+        match view {
+            ShapeView::Mesh(mesh) => {
                 let is_needed = has_surfaces || needs_trees && self.are_rigid();
-                let surface = is_needed.then(|| known.mesh.acquire(view, needs_trees)).flatten();
-                let tree = surface.as_ref().and_then(LazySurface::tree).filter(|_| needs_trees);
-                let surface = surface.filter(|_| has_surfaces);
-                (TriangleShape::Mesh(MeshShape { view, surface, room: Room::No }), tree)
+                surface = is_needed.then(|| known.mesh.acquire(mesh, needs_trees)).flatten();
             }
             ShapeView::Field(field) => {
                 let is_solid = self.config.solid_height_fields && field.points_up();
-                let side = if is_solid { Side::Outer } else { Side::Sheet };
-                let side = has_surfaces.then_some(side);
-                (TriangleShape::Field(FieldShape { field: *field, side, cone: None }), None)
+                let of_ground = if is_solid { Side::Outer } else { Side::Sheet };
+                side = has_surfaces.then_some(of_ground);
             }
         }
+        let tree = surface.as_ref().and_then(LazySurface::tree).filter(|_| needs_trees);
+        let surface = surface.filter(|_| has_surfaces);
+        TriangleShape { view, surface, tree, room: Room::No, side }
     }
 }
 
@@ -180,22 +167,18 @@ impl<'a> Pair for MeshPair<'a> {
         ([known1, known2], [in_room, inside]): &'q mut Self::State,
     ) -> TriangleQuery<'q> {
         let [shape1, shape2] = &self.shapes;
-        let (shape1, tree1) = self.opened(shape1, known1);
-        let (shape2, tree2) = self.opened(shape2, known2);
+        let [shape1, shape2] = [self.opened(shape1, known1), self.opened(shape2, known2)];
         let radius = shape1.ball().radius.min(shape2.ball().radius);
         let mut shapes = TriangleShapes {
             pose: self.pose,
             larger: usize::from(shape1.size_squared() < shape2.size_squared()),
             shapes: [shape1, shape2],
-            trees: tree1.zip(tree2).map(<[_; 2]>::from),
             filter_distance: filter_distance(self.has_surfaces(), radius),
             reach: OnceLock::new(),
             over_sheets: Default::default(),
         };
         let room = HeldMesh::of(&shapes).map_or(Room::No, |mesh| mesh.room(in_room));
-        if let TriangleShape::Mesh(mesh) = &mut shapes.shapes[shapes.larger] {
-            mesh.room = room;
-        }
+        shapes.shapes[shapes.larger].room = room;
         let has_patches = self.config.has_patches() && self.are_rigid();
         let patches = has_patches.then(|| PatchPlan::new(self.pose.prediction, radius));
         TriangleQuery { shapes, patches, in_room, inside }
@@ -374,7 +357,7 @@ impl PairQuery for TriangleQuery<'_> {
         _: &mut TriangleScratch,
         points: &mut ContactPoints,
     ) {
-        let shapes = &mut self.shapes;
+        let shapes = &self.shapes;
         let clipped = &mut ManifoldPoints::new();
         points.points.clear();
         let Some(local) = shapes.local(*pair) else { return };

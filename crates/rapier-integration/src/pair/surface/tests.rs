@@ -9,7 +9,8 @@ use crate::mesh::MeshStore;
 use crate::pair::descents::DescentMemory;
 use crate::pair::pose::PairPose;
 use crate::pair::query::Pair;
-use crate::pair::triangles::{MeshPair, ShapeView};
+use crate::pair::shapes::ShapeView;
+use crate::pair::triangles::MeshPair;
 
 /// Balls with triangles as large as the prediction distance, apart and crossing. Would
 /// catch contacts that [`TriangleShapes::lateral_culling`] loses.
