@@ -12,7 +12,7 @@ use parry3d::shape::{CompositeShape, Shape, SharedShape, TriMesh};
 use sbbk_core::surface::SurfaceKind;
 use sbbk_core::tree::{BuildError, Tree};
 
-use crate::mesh::{MeshStore, MeshView, PairMesh, Registered};
+use crate::mesh::{KnownMesh, MeshStore, MeshView, Registered};
 use crate::{SbbkConfig, SbbkStats};
 
 /// A query dispatcher for Rapier, and for other hosts of Parry.
@@ -113,7 +113,7 @@ impl SbbkDispatcher {
     /// to 50 ms.
     pub fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
         let Some(view) = self.store.view(mesh) else { return SurfaceKind::Sheet };
-        let mut known = PairMesh::default();
+        let mut known = KnownMesh::default();
         known.update(&view);
         known.acquire(&view, false).map_or(SurfaceKind::Sheet, |surface| surface.kind())
     }

@@ -40,7 +40,7 @@ use super::sides::{HeldMesh, InsideTest};
 use super::surface::{SurfaceFilter, Verdict, leans};
 use super::triangle_points::{constrained_normal, write_triangle_points};
 use crate::SbbkConfig;
-use crate::mesh::{Change, LazySurface, PairMesh, use_trees};
+use crate::mesh::{Change, KnownMesh, LazySurface, use_trees};
 
 /// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until
 /// bodies have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep
@@ -76,7 +76,7 @@ pub(crate) struct MeshPair<'a> {
 /// A pair's knowledge of one of its shapes, which is a mesh or a field.
 #[derive(Clone, Default)]
 pub(crate) struct KnownShape {
-    mesh: PairMesh,
+    mesh: KnownMesh,
     field: Option<FieldToken>,
 }
 
@@ -90,7 +90,7 @@ impl KnownShape {
             }
             ShapeView::Field(field) => FieldToken::of(field.0),
         };
-        self.mesh = PairMesh::default();
+        self.mesh = KnownMesh::default();
         match self.field.replace(field) {
             None => Change::Unknown,
             Some(known) if known == field => Change::Unchanged,

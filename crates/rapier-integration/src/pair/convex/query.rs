@@ -19,7 +19,7 @@ use super::pair::ConvexPair;
 use super::parts::{Part, PartData, Parts, PlacedPart};
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::mesh::{Change, LazySurface, PairMesh};
+use crate::mesh::{Change, KnownMesh, LazySurface};
 use crate::pair::pose::{Moving, PairPose};
 use crate::pair::query::{Candidate, ContactList, ContactPoints, Limits, Memory, Pair, PairQuery};
 use crate::pair::reduce::{ContactSummary, PatchPlan};
@@ -27,7 +27,7 @@ use crate::pair::ways::Ways;
 
 impl<'a> Pair for ConvexPair<'a> {
     /// Data of the mesh and of the parts that the candidates belong to.
-    type State = (PairMesh, PartData);
+    type State = (KnownMesh, PartData);
     type Hint = ();
     type Query<'q>
         = ConvexQuery<'q>

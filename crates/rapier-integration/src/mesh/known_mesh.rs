@@ -12,21 +12,14 @@ use super::rays::MeshRays;
 use super::store::{Registered, is_small};
 use super::view::{MeshView, nearest};
 
-/// State of one mesh of a pair of colliders, kept from query to query.
+/// A pair's knowledge of one of its meshes, kept from query to query. Valid for meshes with the same
+/// token, and for the same store.
 #[derive(Clone, Default)]
-pub(crate) enum PairMesh {
-    /// No query has used the mesh.
-    #[default]
-    Unknown,
-    Rigid(Box<RigidMesh>),
-    /// The mesh may change between any two queries, so nothing is kept.
-    Deformable,
-}
-
-/// Valid for meshes with the same token, and for the same store.
-#[derive(Clone)]
-pub(crate) struct RigidMesh {
-    token: MeshToken,
+pub(crate) struct KnownMesh {
+    /// `None` before the first query, and for a deformable mesh. That one may change between any
+    /// two queries, so nothing is kept.
+    token: Option<MeshToken>,
+    is_deformable: bool,
     store_id: u64,
     /// Registrations of the store when the registered meshes were last searched for this one.
     searched_at: Option<u64>,
@@ -47,32 +40,18 @@ pub(crate) enum Change {
     Replaced,
 }
 
-impl PairMesh {
+impl KnownMesh {
     /// Compares with the mesh of the last query, and stores the one of this query.
     pub(crate) fn update(&mut self, view: &MeshView<'_>) -> Change {
-        if !view.is_rigid() {
-            let is_other = matches!(self, Self::Rigid { .. });
-            *self = Self::Deformable;
-            return if is_other { Change::Replaced } else { Change::Unknown };
+        let (is_deformable, store_id) = (!view.is_rigid(), view.store.id);
+        let token = (!is_deformable).then(|| MeshToken::of(view.mesh));
+        let is_same = self.token == token;
+        if is_same && !is_deformable && self.store_id == store_id {
+            return self.refresh(view);
         }
-        let token = MeshToken::of(view.mesh);
-        let change = match self {
-            Self::Rigid(mesh) if mesh.token == token && mesh.store_id == view.store.id => {
-                return mesh.refresh(view);
-            }
-            Self::Rigid(mesh) if mesh.token == token => Change::Unknown,
-            Self::Unknown => Change::Unknown,
-            Self::Rigid(_) | Self::Deformable => Change::Replaced,
-        };
-        *self = Self::Rigid(Box::new(RigidMesh {
-            token,
-            store_id: view.store.id,
-            searched_at: None,
-            registration: None,
-            declared_kind: None,
-            data: OnceLock::new(),
-        }));
-        change
+        let is_first = self.token.is_none() && !self.is_deformable;
+        *self = Self { token, is_deformable, store_id, ..Self::default() };
+        if is_same || is_first { Change::Unknown } else { Change::Replaced }
     }
 
     /// Returns the surface of a rigid mesh, with its [tree](LazySurface::tree) if there is one.
@@ -85,21 +64,19 @@ impl PairMesh {
         view: &'a MeshView<'a>,
         needs_tree: bool,
     ) -> Option<LazySurface<'a>> {
-        let (Self::Rigid(known), MeshView { mesh, store, .. }) = (self, view) else { return None };
-        let is_first = known.searched_at.is_none();
+        self.token.as_ref()?;
+        let (MeshView { mesh, store, .. }, is_first) = (view, self.searched_at.is_none());
         if is_first {
-            known.searched_at = Some(store.registrations());
-            known.search(view);
+            self.searched_at = Some(store.registrations());
+            self.search(view);
         }
         if needs_tree && !is_first && is_small(mesh.indices().len()) {
-            store.build_within_budget(mesh, known.data.get_or_init(|| store.entry(mesh)));
+            store.build_within_budget(mesh, self.data.get_or_init(|| store.entry(mesh)));
         }
         let (declared, memo) = Default::default();
-        Some(LazySurface { data: &known.data, view, declared, memo })
+        Some(LazySurface { data: &self.data, view, declared, memo })
     }
-}
 
-impl RigidMesh {
     /// Takes note of registrations and declared kinds since the last query.
     fn refresh(&mut self, view: &MeshView<'_>) -> Change {
         let registrations = view.store.registrations();
@@ -281,7 +258,7 @@ mod tests {
         let [one, other] = [3, 4].map(|rows| mesh(rows, TriMeshFlags::empty()));
         let soft = mesh(3, TriMeshFlags::DEFORMABLE);
         let stores = [store(), store()];
-        let mut known = PairMesh::default();
+        let mut known = KnownMesh::default();
         for (mesh, owner, change) in [
             (&one, 0, Change::Unknown),
             (&one, 0, Change::Unchanged),
@@ -297,7 +274,7 @@ mod tests {
     }
 
     /// Returns whether the whole surface is used, and whether the mesh is a solid.
-    fn surface(known: &mut PairMesh, store: &MeshStore, mesh: &TriMesh) -> [bool; 2] {
+    fn surface(known: &mut KnownMesh, store: &MeshStore, mesh: &TriMesh) -> [bool; 2] {
         let view = store.view(mesh).unwrap();
         known.update(&view);
         let surface = known.acquire(&view, true).unwrap();
@@ -310,7 +287,7 @@ mod tests {
     fn open_terrains_are_analysed_where_something_touches() {
         let store = store();
         let ask = |mesh: &TriMesh| {
-            let (view, mut known) = (store.view(mesh).unwrap(), PairMesh::default());
+            let (view, mut known) = (store.view(mesh).unwrap(), KnownMesh::default());
             known.update(&view);
             let surface = known.acquire(&view, true).unwrap();
             let side = surface.around(7).side;
@@ -332,7 +309,7 @@ mod tests {
         let store = store();
         let shape = SharedShape::new(mesh(260, TriMeshFlags::empty()));
         let mesh = shape.as_trimesh().unwrap();
-        let mut known = PairMesh::default();
+        let mut known = KnownMesh::default();
         assert_eq!(surface(&mut known, &store, mesh), [false, true]);
         let registered = store.register(mesh, Some(&shape)).unwrap();
         assert_eq!(known.clone().update(&store.view(mesh).unwrap()), Change::Unknown);
@@ -352,8 +329,8 @@ mod tests {
     fn a_pair_that_has_its_meshes_takes_no_lock() {
         let (store, meshes) = (store(), [6, 100].map(|rows| mesh(rows, TriMeshFlags::empty())));
         let _registered = store.register(&meshes[1], None).unwrap();
-        let mut known = [(); 2].map(|()| PairMesh::default());
-        let query = |known: &mut [PairMesh; 2]| {
+        let mut known = [(); 2].map(|()| KnownMesh::default());
+        let query = |known: &mut [KnownMesh; 2]| {
             let mut both = known.iter_mut().zip(&meshes);
             both.all(|(known, mesh)| surface(known, &store, mesh) == [true; 2])
         };
