@@ -94,9 +94,16 @@ fn cut(corners: &[DVec3; 3], normal: DVec3, on: DVec3, along: DVec3) -> Option<[
 /// Points of an overlap, and the segments that stand for them.
 type Points<'s> = ArrayVec<(&'s Segment, DVec3), CONTOUR_POINTS>;
 
-/// A closed contour.
-struct Contour<'s> {
-    segments: &'s [Segment],
+/// Distances from each point to where shape 1 ends along a way, and shape 2 against the way.
+type Exits = ArrayVec<Option<[f64; 2]>, CONTOUR_POINTS>;
+
+/// A closed contour of two shapes that overlap.
+struct Contour<'a> {
+    shapes: &'a TriangleShapes<'a>,
+    /// True for each shape that may be left through both sides of its triangles: sheets, and shapes
+    /// with triangles that are wound unlike the others.
+    is_two_way: [bool; 2],
+    segments: &'a [Segment],
     length: f64,
     /// A point of the overlap in the middle of the contour.
     middle: DVec3,
@@ -106,9 +113,15 @@ struct Contour<'s> {
     is_flat: bool,
 }
 
-impl<'s> Contour<'s> {
+impl<'a> Contour<'a> {
     /// Returns `None` for segments that do not form a closed contour, or whose area vectors cancel.
-    fn of(segments: &'s [Segment]) -> Option<Self> {
+    fn of(
+        shapes: &'a TriangleShapes<'a>,
+        island: &[Crossing],
+        segments: &'a [Segment],
+    ) -> Option<Self> {
+        let is_uniform =
+            |i: usize, crossing: &Crossing| crossing.outward[i] == Some(shapes[i].outward());
         let length: f64 = segments.iter().map(Segment::length).sum();
         let moment: DVec3 = segments.iter().map(|one| one.length() * one.middle()).sum();
         let middle = moment / length;
@@ -124,6 +137,8 @@ impl<'s> Contour<'s> {
         let normal = area.normalize_or_zero();
         let mut ends = segments.iter().flat_map(|one| one.ends);
         (is_closed && area.length() > COHERENT * swept).then(|| Self {
+            shapes,
+            is_two_way: [0, 1].map(|i| !island.iter().all(|crossing| is_uniform(i, crossing))),
             segments,
             length,
             middle: middle - INSET * outward,
@@ -134,7 +149,7 @@ impl<'s> Contour<'s> {
 
     /// Returns points of the overlap, with segments that stand for them: the middle, and points far
     /// from each other at the contour. Only ties depend on the order of the segments.
-    fn points(&self) -> Points<'s> {
+    fn points(&self) -> Points<'a> {
         let from_middle = |one: &Segment| one.middle().distance_squared(self.middle);
         let nearest = self.segments.iter().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
         let mut chosen = Points::new();
@@ -152,91 +167,37 @@ impl<'s> Contour<'s> {
         }
         chosen
     }
-}
 
-/// Memory for contours: crossings by island, and the segments of an island.
-#[derive(Default)]
-pub(super) struct ContourMemory {
-    crossings: Vec<Crossing>,
-    segments: Vec<Segment>,
-}
-
-/// A way by which shape 2 leaves an overlap.
-struct Way {
-    /// Direction, in frame 1.
-    normal: DVec3,
-    /// Greatest depth along the way.
-    length: f64,
-    /// Distances from each point to where shape 1 ends along the way, and shape 2 against it.
-    exits: ArrayVec<Option<[f64; 2]>, CONTOUR_POINTS>,
-}
-
-/// An overlap of two shapes.
-struct Overlap<'a> {
-    shapes: &'a TriangleShapes<'a>,
-    /// True for each shape that may be left through both sides of its triangles.
-    is_two_way: [bool; 2],
-}
-
-/// Finds the ways out of islands that have a closed contour, and the contacts along them.
-pub(super) fn find_ways(
-    shapes: &TriangleShapes<'_>,
-    islands: &mut OverlapIslands,
-    ContourMemory { crossings, segments }: &mut ContourMemory,
-) {
-    islands.list_contours(crossings);
-    for island in crossings.chunk_by(|a, b| a.island == b.island) {
-        let segment = |crossing: &Crossing| Segment::of(crossing, &shapes.local(crossing.pair)?);
-        segments.clear();
-        segments.extend(island.iter().filter_map(segment));
-        let Some(contour) = Contour::of(segments) else { continue };
-        let points = contour.points();
-        let overlap = Overlap::of(shapes, island);
-        let Some((way, is_exact)) = overlap.way_across(&contour, &points) else { continue };
-        let Way { normal, length, exits } = way;
-        let way = IslandWay { normal, length, is_exact, has_middle: exits[0].is_some() };
-        let contacts = points.iter().zip(exits).filter_map(|((segment, point), exits)| {
-            Some((segment.pair, overlap.contact_across(segment.pair, *point, normal, exits?)?))
-        });
-        islands.set_way_out(island[0].island, way, contacts);
-    }
-}
-
-impl<'a> Overlap<'a> {
-    /// Sheets may be left through both sides. So may shapes with triangles that are wound unlike
-    /// the others.
-    fn of(shapes: &'a TriangleShapes<'a>, island: &[Crossing]) -> Self {
-        let is_uniform =
-            |i: usize, crossing: &Crossing| crossing.outward[i] == Some(shapes[i].outward());
-        let is_two_way = [0, 1].map(|i| !island.iter().all(|crossing| is_uniform(i, crossing)));
-        Self { shapes, is_two_way }
-    }
-
-    /// Returns the shortest way by which shape 2 leaves an overlap, and whether the way is exact.
-    /// Exact ways are the normal of two faces across from each other, and the area vector of a flat
-    /// contour. Other ways are the area vector, and the normals where it leads out from the middle.
-    /// Directions from the middle to the nearest points of both surfaces are tried as well.
-    fn way_across(&self, contour: &Contour, points: &Points) -> Option<(Way, bool)> {
-        let Contour { length, middle, normal, is_flat, .. } = *contour;
+    /// Returns the shortest way by which shape 2 leaves the overlap. Exact ways are the normal of
+    /// two faces across from each other, and the area vector of a flat contour. Other ways are the
+    /// area vector, and the normals where it leads out from the middle. Directions from the middle
+    /// to the nearest points of both surfaces are tried as well.
+    fn way_across(&self, points: &Points) -> Option<(IslandWay, Exits)> {
+        let Self { length, middle, normal, is_flat, .. } = *self;
         let most = DEPTH_PER_LENGTH * length;
         let is_near = |way: &DVec3| way.dot(normal) > SAME_SIDE;
         let normals = self.exits(middle, normal).map(|[(_, one), (_, two)]| [one, -two]);
         let face = normals.filter(|[one, two]| one.dot(*two) > ALONG_NORMAL).map(|[one, _]| one);
         if let Some(way) = face.filter(is_near).or(is_flat.then_some(normal)) {
-            return Some((self.way_along(way, points, most)?, true));
+            return self.way_along(way, true, points, most);
         }
         let ways = normals.into_iter().flatten().chain(self.nearest_ways(middle)).filter(is_near);
-        let shortest = ways.chain([normal]).fold(None, |shortest: Option<Way>, way| {
-            let limit = shortest.as_ref().map_or(most, |known| known.length);
-            self.way_along(way, points, limit).or(shortest)
-        });
-        Some((shortest?, false))
+        ways.chain([normal]).fold(None, |shortest: Option<(IslandWay, _)>, way| {
+            let limit = shortest.as_ref().map_or(most, |(known, _)| known.length);
+            self.way_along(way, false, points, limit).or(shortest)
+        })
     }
 
     /// Returns the way along a direction. `None` if the direction leads out from no point, or if
     /// the way is not shorter than a limit.
-    fn way_along(&self, normal: DVec3, points: &Points, limit: f64) -> Option<Way> {
-        let (mut length, mut exits) = (f64::NEG_INFINITY, ArrayVec::new());
+    fn way_along(
+        &self,
+        normal: DVec3,
+        is_exact: bool,
+        points: &Points,
+        limit: f64,
+    ) -> Option<(IslandWay, Exits)> {
+        let (mut length, mut exits) = (f64::NEG_INFINITY, Exits::new());
         for (_, point) in points {
             let lengths = self.exits(*point, normal).map(|exits| exits.map(|(length, _)| length));
             exits.push(lengths);
@@ -245,7 +206,10 @@ impl<'a> Overlap<'a> {
                 return None;
             }
         }
-        (length >= 0.0).then_some(Way { normal, length, exits })
+        (length >= 0.0).then(|| {
+            let has_middle = exits[0].is_some();
+            (IslandWay { normal, length, is_exact, has_middle }, exits)
+        })
     }
 
     /// Returns directions in which the nearest points of both surfaces lead shape 2 out. `point` is
@@ -287,5 +251,33 @@ impl<'a> Overlap<'a> {
         let point = point - origin.as_dvec3();
         let points = [point + exit1 * normal, point - exit2 * normal];
         Some(TriangleSurfaceContact::push_out(normal, -exit1 - exit2, points))
+    }
+}
+
+/// Memory for contours: crossings by island, and the segments of an island.
+#[derive(Default)]
+pub(super) struct ContourMemory {
+    crossings: Vec<Crossing>,
+    segments: Vec<Segment>,
+}
+
+/// Finds the ways out of islands that have a closed contour, and the contacts along them.
+pub(super) fn find_ways(
+    shapes: &TriangleShapes<'_>,
+    islands: &mut OverlapIslands,
+    ContourMemory { crossings, segments }: &mut ContourMemory,
+) {
+    islands.list_contours(crossings);
+    for island in crossings.chunk_by(|a, b| a.island == b.island) {
+        let segment = |crossing: &Crossing| Segment::of(crossing, &shapes.local(crossing.pair)?);
+        segments.clear();
+        segments.extend(island.iter().filter_map(segment));
+        let Some(contour) = Contour::of(shapes, island, segments) else { continue };
+        let points = contour.points();
+        let Some((way, exits)) = contour.way_across(&points) else { continue };
+        let contacts = points.iter().zip(exits).filter_map(|((segment, point), exits)| {
+            Some((segment.pair, contour.contact_across(segment.pair, *point, way.normal, exits?)?))
+        });
+        islands.set_way_out(island[0].island, way, contacts);
     }
 }
