@@ -4,7 +4,7 @@ use sbbk_core::collections::UnionFind;
 use sbbk_core::surface::area_vector;
 
 use super::shapes::TriangleHit;
-use super::ways::{Directions, SAME_SIDE, Ways};
+use super::ways::{Directions, SAME_DIRECTION, SAME_SIDE, Ways, add_direction};
 
 /// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
 /// contacts that push each island apart.
@@ -184,8 +184,10 @@ impl OverlapIslands {
         crossing.chain(touching.copied())
     }
 
-    /// Finds the ways that part whole islands, and rejects contacts that push aside. Returns true
-    /// if a second pass is needed. `small`: depth of bodies at rest. `is_parted` tells if a way of
+    /// Finds the ways that part whole islands, and rejects contacts that push aside. Two crossing
+    /// triangles know the ways across their own faces and edges. A contact of another pair may part
+    /// them as well, if both surfaces end where the overlap along its way does. Returns true if a
+    /// second pass is needed. `small`: depth of bodies at rest. `is_parted` tells if a way of
     /// a length parts two triangles, and both surfaces end there.
     pub(super) fn settle_one_ways(
         &mut self,
@@ -205,6 +207,37 @@ impl OverlapIslands {
         let needs_more = |support: &Support| !support.is_enough();
         let is_rejected = |crossing: &Crossing| crossing.is_rejected;
         self.crossings.iter().any(is_rejected) || self.support.iter().any(needs_more)
+    }
+
+    /// Returns true if the normals of all contacts are within an angle of the first one.
+    fn are_within(&self, cosine: f64) -> bool {
+        let Some(first) = self.crossings.first() else { return true };
+        self.crossings.iter().all(|one| one.normal.dot(first.normal) >= cosine)
+    }
+
+    /// Notes the way of the contacts if there is only one, at a `small` depth.
+    fn note_one_way(&mut self, small: f64) {
+        let depth = self.crossings.iter().map(|crossing| crossing.depth).fold(0.0, f64::max);
+        let way = self.crossings.first().map(|crossing| (crossing.normal, depth));
+        if depth <= small && self.are_within(SAME_DIRECTION) {
+            self.one_ways.extend(way);
+        }
+    }
+
+    /// Rejects contacts that push aside where one way parts all pairs of the island at a `small`
+    /// depth.
+    fn keep_one_way(&mut self, small: f64, is_parted: impl Fn([u32; 2], DVec3, f64) -> bool) {
+        let Self { crossings, ways, one_ways, .. } = self;
+        let fine = crossings.iter().filter(|crossing| crossing.is_fine());
+        let fine = fine.map(|&Crossing { island, normal, depth, .. }| (island, normal, depth));
+        let pairs =
+            crossings.iter().map(|&Crossing { island, normal, pair, .. }| (island, normal, pair));
+        ways.find(small, fine, pairs, is_parted);
+        for crossing in crossings {
+            let Some((way, depth)) = ways.least(crossing.island) else { continue };
+            add_direction(one_ways, way, depth);
+            crossing.is_rejected |= way.dot(crossing.normal) < SAME_SIDE;
+        }
     }
 
     /// Joins crossings with common triangles to islands. An island has the index of its first
@@ -292,8 +325,6 @@ impl OverlapIslands {
         }
     }
 }
-
-mod one_way;
 
 #[cfg(test)]
 mod tests;

@@ -39,32 +39,26 @@ pub(super) type Directions = ArrayVec<(DVec3, f64), MOST_DIRECTIONS>;
 pub(super) struct Ways(FxHashMap<usize, Directions>);
 
 impl Ways {
-    pub(super) fn clear(&mut self) {
-        self.0.clear();
-    }
-
-    /// Returns the directions of a group.
-    pub(super) fn of(&mut self, group: usize) -> &mut Directions {
-        self.0.entry(group).or_default()
-    }
-
-    /// Adds the direction of a contact.
-    pub(super) fn add(&mut self, group: usize, normal: DVec3, depth: f64) {
-        add_direction(self.of(group), normal, depth);
-    }
-
-    /// Removes the ways that are deeper than `small`, and those that do not part an overlap with a
-    /// contact along `normal`.
-    pub(super) fn keep_parting(
+    /// Replaces the ways by those of reliable contacts, each with its group and depth. Removes ways
+    /// that are deeper than `small`. Also removes ways that part no overlap: `overlaps` come with
+    /// their groups and the normals of their contacts.
+    pub(super) fn find<T: Copy>(
         &mut self,
-        group: usize,
-        normal: DVec3,
         small: f64,
-        mut is_parted: impl FnMut(DVec3, f64) -> bool,
+        reliable: impl Iterator<Item = (usize, DVec3, f64)>,
+        overlaps: impl Iterator<Item = (usize, DVec3, T)>,
+        mut is_parted: impl FnMut(T, DVec3, f64) -> bool,
     ) {
-        self.of(group).retain(|(way, depth)| {
-            *depth <= small && (way.dot(normal) >= SAME_DIRECTION || is_parted(*way, *depth))
-        });
+        self.0.clear();
+        for (group, normal, depth) in reliable {
+            add_direction(self.0.entry(group).or_default(), normal, depth);
+        }
+        for (group, normal, overlap) in overlaps {
+            self.0.entry(group).or_default().retain(|(way, depth)| {
+                let is_own = way.dot(normal) >= SAME_DIRECTION;
+                *depth <= small && (is_own || is_parted(overlap, *way, *depth))
+            });
+        }
     }
 
     /// Returns the least deep way of a group.

@@ -196,21 +196,19 @@ impl ConvexQuery<'_> {
         ways: &mut Ways,
         at_hand: &mut PlacedParts,
     ) {
-        let part_of = |of: [u32; 2]| self.pair.mesh_place.swap(of)[1] as usize;
-        ways.clear();
-        for hit @ (of, PartContact { contact, .. }) in contacts {
-            let depth = self.depth(hit);
-            if depth >= -equal_height(self.filter_unit()) {
-                ways.add(part_of(*of), contact.normal, depth.max(0.0));
-            }
-        }
+        let hits = contacts.iter().map(|hit @ (of, PartContact { contact, .. })| {
+            let [_, part] = self.pair.mesh_place.swap(*of);
+            (part as usize, contact.normal, hit, self.depth(hit))
+        });
+        let least = -equal_height(self.filter_unit());
+        let known = hits.clone().filter(|(.., depth)| *depth >= least);
+        let known = known.map(|(part, normal, _, depth)| (part, normal, depth.max(0.0)));
+        let overlaps = hits.filter(|(.., depth)| *depth > 0.0);
+        let overlaps = overlaps.map(|(part, normal, hit, _)| (part, normal, hit));
         let small = RESTING_DEPTH * self.filter_distance();
-        for hit @ (of, PartContact { contact, .. }) in contacts {
-            if self.depth(hit) > 0.0 {
-                let is_parted = |way, length| self.is_parted(surface, hit, (way, length), at_hand);
-                ways.keep_parting(part_of(*of), contact.normal, small, is_parted);
-            }
-        }
+        ways.find(small, known, overlaps, |hit, way, length| {
+            self.is_parted(surface, hit, (way, length), at_hand)
+        });
     }
 
     /// Returns the depth of a contact; negative if it is apart.
