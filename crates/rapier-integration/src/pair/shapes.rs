@@ -218,8 +218,9 @@ pub(crate) struct TriangleShape<'q> {
 }
 
 /// Tells if a mesh is a room for the other shape, and has no inside.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub(crate) enum Room {
+    #[default]
     No,
     /// Faces lead away from the room. They collide on both sides, as what stands in the room has
     /// faces of its own.

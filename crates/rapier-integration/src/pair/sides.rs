@@ -112,30 +112,32 @@ const SURE: f64 = 0.99;
 
 /// Last result of the test whether the smaller mesh is inside the larger one. Spares most queries a
 /// test.
-///
-/// The larger mesh was such a room at this placement of the smaller mesh, and stays one for this
-/// motion. [`Room::No`] if a point of the smaller mesh was this far outside, or if the larger mesh
-/// is no solid. `None` before a test.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct InsideTest(Option<(Room, Placement, f64)>);
+pub(crate) struct InsideTest {
+    /// [`Room::No`] if a point of the smaller mesh was outside, or if the larger mesh is no solid.
+    room: Room,
+    /// Placement of the smaller mesh; `None` before a test.
+    placement: Option<Placement>,
+    /// Motion for which the larger mesh stays such a room.
+    slack: f64,
+}
 
 impl InsideTest {
     /// The larger mesh stays such a room for a motion of `slack`.
     fn new(room: Room, placement: &Placement, slack: f32) -> Self {
-        Self(Some((room, *placement, SURE * f64::from(slack))))
+        Self { room, placement: Some(*placement), slack: SURE * f64::from(slack) }
     }
 
     /// Returns the room that holds a mesh. `None` if the last result does not hold for a mesh with
     /// points in `ball`.
     fn known(&self, ball: Sphere, placement: &Placement) -> Option<Room> {
-        let (room, ..) = self.0?;
-        (self.rest(ball, placement) > 0.0).then_some(room)
+        (self.rest(ball, placement) > 0.0).then_some(self.room)
     }
 
     /// Returns the motion for which the last result still holds.
     fn rest(&self, ball: Sphere, placement: &Placement) -> f64 {
-        self.0.as_ref().map_or(0.0, |(_, before, slack)| {
-            slack - placement.motion_bound(before, ball.centre, ball.radius)
+        self.placement.as_ref().map_or(0.0, |before| {
+            self.slack - placement.motion_bound(before, ball.centre, ball.radius)
         })
     }
 }
@@ -198,10 +200,8 @@ impl<'a> HeldMesh<'a> {
     /// out. `middle` is outside.
     fn is_behind_wall(&self, middle: Vector, test: &mut InsideTest) -> bool {
         let most = f64::from(STICKS_OUT * self.held.ball().radius);
-        if test.rest(self.held.ball(), self.placement()) > most
-            && let Some((_, _, slack)) = &mut test.0
-        {
-            *slack -= most;
+        if test.rest(self.held.ball(), self.placement()) > most {
+            test.slack -= most;
             return false;
         }
         if self.surface.kind() != SurfaceKind::InsideOut {

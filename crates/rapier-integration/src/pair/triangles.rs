@@ -59,10 +59,9 @@ const NEARER: f64 = 0.999;
 pub(crate) struct TriangleQuery<'q> {
     pub(super) shapes: TriangleShapes<'q>,
     pub(super) patches: Option<PatchPlan>,
-    /// Tells if one mesh is a room for the other.
-    pub(super) in_room: &'q InsideTest,
-    /// Tells if one mesh is inside the other.
-    pub(super) inside: &'q mut InsideTest,
+    /// See [`KnownPair`].
+    in_room: &'q InsideTest,
+    inside: &'q mut InsideTest,
 }
 
 /// A mesh and another mesh or a height field.
@@ -71,6 +70,16 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) pose: &'a PairPose,
     pub(crate) shapes: [ShapeView<'a>; 2],
     pub(crate) config: &'a SbbkConfig,
+}
+
+/// What a pair keeps from query to query.
+#[derive(Clone, Default)]
+pub(crate) struct KnownPair {
+    shapes: [KnownShape; 2],
+    /// Tells if one mesh is a room for the other.
+    in_room: InsideTest,
+    /// Tells if one mesh is inside the other.
+    inside: InsideTest,
 }
 
 /// A pair's knowledge of one of its shapes, which is a mesh or a field.
@@ -141,8 +150,7 @@ impl MeshPair<'_> {
 }
 
 impl<'a> Pair for MeshPair<'a> {
-    /// The shapes, whether one is a room for the other, and whether one is inside the other.
-    type State = ([KnownShape; 2], [InsideTest; 2]);
+    type State = KnownPair;
     type Hint = Hint;
     type Query<'q>
         = TriangleQuery<'q>
@@ -153,19 +161,17 @@ impl<'a> Pair for MeshPair<'a> {
         self.pose
     }
 
-    fn update(&self, ([known1, known2], tests): &mut Self::State) -> Change {
+    fn update(&self, KnownPair { shapes, in_room, inside }: &mut KnownPair) -> Change {
         let [shape1, shape2] = &self.shapes;
-        let change = known1.update(shape1).max(known2.update(shape2));
+        let change = shapes[0].update(shape1).max(shapes[1].update(shape2));
         if change != Change::Unchanged {
-            *tests = Default::default();
+            (*in_room, *inside) = Default::default();
         }
         change
     }
 
-    fn open<'q>(
-        &'q self,
-        ([known1, known2], [in_room, inside]): &'q mut Self::State,
-    ) -> TriangleQuery<'q> {
+    fn open<'q>(&'q self, known: &'q mut KnownPair) -> TriangleQuery<'q> {
+        let KnownPair { shapes: [known1, known2], in_room, inside } = known;
         let [shape1, shape2] = &self.shapes;
         let [shape1, shape2] = [self.opened(shape1, known1), self.opened(shape2, known2)];
         let radius = shape1.ball().radius.min(shape2.ball().radius);
