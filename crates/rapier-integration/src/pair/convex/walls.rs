@@ -171,12 +171,9 @@ impl ConvexQuery<'_> {
         }
         let DroppedContacts { removed, ways, .. } = &mut *dropped;
         self.find_ways(surface, contacts, ways, at_hand);
-        let mut last = None;
         for (is_removed, hit) in removed.iter_mut().zip(contacts) {
             let [_, part] = self.pair.mesh_place.swap(hit.0);
-            let known = last.filter(|(of, _)| *of == part);
-            let (_, way) = *last.insert(known.unwrap_or_else(|| (part, ways.least(part as usize))));
-            let Some((way, length)) = way else { continue };
+            let Some((way, length)) = ways.least(part as usize) else { continue };
             let along = way.dot(hit.1.contact.normal);
             *is_removed = if self.depth(hit) > 0.0 {
                 along < SAME_SIDE
