@@ -39,6 +39,7 @@ use super::shapes::{
 use super::sides::{HeldMesh, InsideTest};
 use super::surface::{SurfaceFilter, Verdict, leans};
 use super::triangle_points::{constrained_normal, write_triangle_points};
+use super::ways::RESTING_DEPTH;
 use crate::SbbkConfig;
 use crate::mesh::{Change, KnownMesh, LazySurface, use_trees};
 
@@ -299,7 +300,8 @@ impl PairQuery for TriangleQuery<'_> {
         if !islands.crossings.is_empty() {
             self.add_island_contacts(islands, contours, contacts);
         }
-        if self.settle_one_ways(islands) {
+        let small = RESTING_DEPTH * self.shapes.filter_distance;
+        if islands.settle_one_ways(small, |pair, way, length| self.is_parted(pair, way, length)) {
             self.second_pass(islands, contacts);
         }
         self.drop_lifted(&islands.one_ways, contacts);

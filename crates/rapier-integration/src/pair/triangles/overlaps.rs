@@ -11,7 +11,7 @@ use crate::pair::islands::{Crossing, IslandWay, OverlapIslands};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
-use crate::pair::ways::{ALIKE, RESTING_DEPTH, SAME_DIRECTION, greatest_overlap};
+use crate::pair::ways::{ALIKE, SAME_DIRECTION, greatest_overlap};
 
 /// Least number of crossings of a chunk. Higher: threads wait for each other; lower: threads take
 /// turns for chunks of a few microseconds.
@@ -79,13 +79,6 @@ impl TriangleQuery<'_> {
         (contact.distance <= 0.0).then_some(TriangleSurfaceContact { contact, source })
     }
 
-    /// Finds the ways that part whole islands. Returns true if a second pass is needed.
-    pub(super) fn settle_one_ways(&self, islands: &mut OverlapIslands) -> bool {
-        let small = RESTING_DEPTH * self.shapes.filter_distance;
-        let is_parted = |pair: [u32; 2], way: DVec3, length: f64| self.is_parted(pair, way, length);
-        islands.settle_one_ways(small, is_parted)
-    }
-
     /// Removes contacts apart that a way out of an overlap lifts over their triangles. These are at
     /// the height of the overlap.
     pub(super) fn drop_lifted(
@@ -126,19 +119,15 @@ impl TriangleQuery<'_> {
     }
 
     /// Returns true if a way parts two triangles at their height, and both surfaces end there.
-    fn is_parted(&self, pair: [u32; 2], way: DVec3, length: f64) -> bool {
-        let most = greatest_overlap(length, self.shapes.filter_unit());
-        let ends = |filter: &SurfaceFilter<'_>| filter.ends_along(way);
-        self.overlap(pair, way).is_some_and(|length| length.abs() <= most)
-            && self.shapes.with_filter(pair, ends) == Some(true)
-    }
-
-    /// Returns the overlap of two triangles along a direction in which triangle 2 leaves.
-    fn overlap(&self, pair: [u32; 2], way: DVec3) -> Option<f64> {
-        let heights = self.shapes.local(pair)?.corners.map(|of| of.map(|corner| corner.dot(way)));
+    /// Triangle 2 leaves along the way.
+    pub(super) fn is_parted(&self, pair: [u32; 2], way: DVec3, length: f64) -> bool {
+        let Some(local) = self.shapes.local(pair) else { return false };
+        let heights = local.corners.map(|of| of.map(|corner| corner.dot(way)));
         let highest = heights[0].into_iter().fold(f64::NEG_INFINITY, f64::max);
         let lowest = heights[1].into_iter().fold(f64::INFINITY, f64::min);
-        Some(highest - lowest)
+        (highest - lowest).abs() <= greatest_overlap(length, self.shapes.filter_unit())
+            && SurfaceFilter::new(&self.shapes, pair, &local)
+                .is_some_and(|filter| filter.ends_along(way))
     }
 
     /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too
