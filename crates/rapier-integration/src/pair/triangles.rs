@@ -100,9 +100,11 @@ impl KnownShape {
             }
             ShapeView::Field(field) => FieldToken::of(field.0),
         };
-        self.mesh = KnownMesh::default();
         match self.field.replace(field) {
-            None => Change::Unknown,
+            None => {
+                self.mesh = KnownMesh::default();
+                Change::Unknown
+            }
             Some(known) if known == field => Change::Unchanged,
             Some(_) => Change::Replaced,
         }
