@@ -254,10 +254,13 @@ impl<'a> Contour<'a> {
     }
 }
 
-/// Memory for contours: crossings by island, and the segments of an island.
+/// Memory for contours.
 #[derive(Default)]
 pub(super) struct ContourMemory {
+    /// Crossings that may be part of a contour, one island after another. Crossings with an unknown
+    /// outer side are left out.
     crossings: Vec<Crossing>,
+    /// Segments of the island at hand.
     segments: Vec<Segment>,
 }
 
@@ -267,7 +270,10 @@ pub(super) fn find_ways(
     islands: &mut OverlapIslands,
     ContourMemory { crossings, segments }: &mut ContourMemory,
 ) {
-    islands.list_contours(crossings);
+    let has_sides = |one: &&Crossing| one.is_crossing && one.outward_signs().is_some();
+    crossings.clear();
+    crossings.extend(islands.crossings.iter().filter(has_sides));
+    crossings.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
     for island in crossings.chunk_by(|a, b| a.island == b.island) {
         let segment = |crossing: &Crossing| Segment::of(crossing, &shapes.local(crossing.pair)?);
         segments.clear();
@@ -278,6 +284,8 @@ pub(super) fn find_ways(
         let contacts = points.iter().zip(exits).filter_map(|((segment, point), exits)| {
             Some((segment.pair, contour.contact_across(segment.pair, *point, way.normal, exits?)?))
         });
-        islands.set_way_out(island[0].island, way, contacts);
+        let island = island[0].island;
+        islands.ways_out[island] = Some(way);
+        islands.of_contours.extend(contacts.map(|contact| (island, contact)));
     }
 }

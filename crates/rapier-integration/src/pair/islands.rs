@@ -26,7 +26,7 @@ pub(crate) struct OverlapIslands {
     pub(super) ways_out: Vec<Option<IslandWay>>,
     /// Contacts along these ways in the middles of contours and at points of them, with their
     /// islands.
-    of_contours: Vec<(usize, TriangleHit)>,
+    pub(super) of_contours: Vec<(usize, TriangleHit)>,
     /// Support of each island, by island. Others have no pairs.
     support: Vec<Support>,
 }
@@ -171,19 +171,6 @@ impl OverlapIslands {
         self.touching.clear();
     }
 
-    /// Adds the pairs of the next part of the first pass.
-    pub(super) fn append(&mut self, next: Self) {
-        self.crossings.extend(next.crossings);
-        self.touching.extend(next.touching);
-    }
-
-    /// Returns the pairs that cross, or touch if none do.
-    pub(super) fn overlaps(&self) -> impl Iterator<Item = [u32; 2]> {
-        let crossing = self.crossings.iter().map(|crossing| crossing.pair);
-        let touching = self.touching.iter().filter(|_| self.crossings.is_empty());
-        crossing.chain(touching.copied())
-    }
-
     /// Finds the ways that part whole islands, and rejects contacts that push aside. Two crossing
     /// triangles know the ways across their own faces and edges. A contact of another pair may part
     /// them as well, if both surfaces end where the overlap along its way does. Returns true if a
@@ -277,29 +264,9 @@ impl OverlapIslands {
         Some(self.support[island]).filter(|support| !support.is_enough())
     }
 
-    /// Replaces `list` by the crossings that may be part of a contour, one island after another.
-    /// Crossings with an unknown outer side are left out.
-    pub(super) fn list_contours(&self, list: &mut Vec<Crossing>) {
-        let has_sides = |one: &&Crossing| one.is_crossing && one.outward_signs().is_some();
-        list.clear();
-        list.extend(self.crossings.iter().filter(has_sides));
-        list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
-    }
-
     /// Returns the way out of an island whose pairs all have contacts along it.
     pub(super) fn leading_way(&self, island: usize) -> Option<IslandWay> {
         self.ways_out[island].filter(|way| way.has_middle)
-    }
-
-    /// Sets the way out of an island, and the contacts along the way.
-    pub(super) fn set_way_out(
-        &mut self,
-        island: usize,
-        way: IslandWay,
-        contacts: impl Iterator<Item = TriangleHit>,
-    ) {
-        self.ways_out[island] = Some(way);
-        self.of_contours.extend(contacts.map(|contact| (island, contact)));
     }
 
     /// Returns the contacts along the ways out of some islands.

@@ -231,7 +231,8 @@ impl ChunkResult for FirstPass {
         self.contacts.extend(next.contacts);
         self.upright.extend(next.upright);
         self.passing.extend(next.passing);
-        self.islands.append(next.islands);
+        self.islands.crossings.extend(next.islands.crossings);
+        self.islands.touching.extend(next.islands.touching);
         self.is_near |= next.is_near;
     }
 }

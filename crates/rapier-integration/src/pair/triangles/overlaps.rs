@@ -109,13 +109,16 @@ impl TriangleQuery<'_> {
         }
     }
 
-    /// Returns the contacts of the triangles of all overlaps.
+    /// Returns the contacts of the triangles that cross, or touch if none do.
     pub(super) fn of_overlaps(
         &self,
         islands: &OverlapIslands,
     ) -> impl Iterator<Item = TriangleHit> {
         let within = f64::from(self.shapes.pose.prediction);
-        islands.overlaps().filter_map(move |pair| self.shapes.contact_within(pair, within))
+        let crossing = islands.crossings.iter().map(|crossing| crossing.pair);
+        let touching = islands.touching.iter().filter(|_| islands.crossings.is_empty());
+        let pairs = crossing.chain(touching.copied());
+        pairs.filter_map(move |pair| self.shapes.contact_within(pair, within))
     }
 
     /// Returns true if a way parts two triangles at their height, and both surfaces end there.
