@@ -10,7 +10,7 @@ use sbbk_core::traverse::{BoxTest, DescentCounts, Placement, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::parts::PlacedPart;
-use super::shape::ConvexShape;
+use super::shape::{ConvexShape, Extent};
 use crate::mesh::MeshView;
 
 /// Calls `found` with all triangles within `margin` of a part, and a few others, in the order of
@@ -35,7 +35,7 @@ pub(super) fn triangles_near(
             visit(mesh, near_ball(centre, ball.radius + margin, magnitude), counts, found);
         }
         _ => {
-            let (min, max, radius) = placed.extent.bounds();
+            let Extent { min, max, radius, .. } = placed.extent;
             let size = min.abs().max(max.abs()).max_element();
             let reach = ((f64::from(margin) + f64::from(radius)) as Real).next_up();
             let test = BoxTest::new([magnitude, size], &placed.inverse(), reach);

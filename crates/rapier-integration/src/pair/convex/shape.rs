@@ -138,9 +138,9 @@ impl ShapeToken {
 /// The extent of a shape: its rounding radius and the box around the rest.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Extent {
-    radius: Real,
-    min: Vec3,
-    max: Vec3,
+    pub(super) radius: Real,
+    pub(super) min: Vec3,
+    pub(super) max: Vec3,
     is_infinite: bool,
 }
 
@@ -196,11 +196,6 @@ impl Extent {
         let Sphere { centre, radius } = ball_around(self.min, self.max);
         let radius = (radius + self.radius) * (1.0 + gamma(8));
         Sphere { centre, radius: if self.is_infinite { Real::INFINITY } else { radius } }
-    }
-
-    /// Returns the box around the shape without its radius, and the radius.
-    pub(super) fn bounds(&self) -> (Vec3, Vec3, Real) {
-        (self.min, self.max, self.radius)
     }
 
     /// Returns the box around the shape without its radius, and `reach`, grown by the rounding of
