@@ -16,8 +16,7 @@ use super::view::{MeshView, nearest};
 /// token, and for the same store.
 #[derive(Clone, Default)]
 pub(crate) struct KnownMesh {
-    /// `None` before the first query, and for a deformable mesh. That one may change between any
-    /// two queries, so nothing is kept.
+    /// `None` before the first query, and for a deformable mesh, which may change before any query.
     token: Option<MeshToken>,
     is_deformable: bool,
     store_id: u64,

@@ -73,7 +73,7 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) config: &'a SbbkConfig,
 }
 
-/// What a pair keeps from query to query.
+/// Knowledge that a pair keeps from query to query.
 #[derive(Clone, Default)]
 pub(crate) struct KnownPair {
     shapes: [KnownShape; 2],

@@ -39,9 +39,9 @@ pub(super) type Directions = ArrayVec<(DVec3, f64), MOST_DIRECTIONS>;
 pub(super) struct Ways(FxHashMap<usize, Directions>);
 
 impl Ways {
-    /// Replaces the ways by those of reliable contacts, each with its group and depth. Removes ways
-    /// that are deeper than `small`. Also removes ways that part no overlap: `overlaps` come with
-    /// their groups and the normals of their contacts.
+    /// Finds the ways of `reliable` contacts that are no deeper than `small`, and part overlaps of
+    /// their group. Contacts come with their group and depth, `overlaps` with their group and the
+    /// normal of their contact.
     pub(super) fn find<T: Copy>(
         &mut self,
         small: f64,

@@ -31,7 +31,7 @@ const NOISE: f64 = 1.1;
 /// Sizes in units for which Rapier's default `length_unit` is right.
 const USUAL_SIZES: [f32; 2] = [0.3, 30.0];
 
-/// What a subject is used as; dynamic bodies are number `BODY`.
+/// Uses of a subject. Dynamic bodies are number `BODY`.
 const USES: [&str; 3] = ["terrain", "bodies", "sensors"];
 const BODY: usize = 1;
 

@@ -154,7 +154,7 @@ pub(super) struct World {
 pub(super) struct Watched {
     /// Greatest rise of the energy.
     pub rise: f64,
-    /// The same, as a share of the energy at the start.
+    /// Greatest rise, as a share of the energy at the start.
     pub gain: f64,
     /// Median time of the measured steps, in milliseconds.
     pub step_time: f64,
