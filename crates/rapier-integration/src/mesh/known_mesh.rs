@@ -12,8 +12,8 @@ use super::rays::MeshRays;
 use super::store::{Registered, is_small};
 use super::view::{MeshView, nearest};
 
-/// A pair's knowledge of one of its meshes, kept from query to query. Valid for meshes with the same
-/// token, and for the same store.
+/// A pair's knowledge of one of its meshes, kept from query to query. Valid for meshes with the
+/// same token, and for the same store.
 #[derive(Clone, Default)]
 pub(crate) struct KnownMesh {
     /// `None` before the first query, and for a deformable mesh, which may change before any query.

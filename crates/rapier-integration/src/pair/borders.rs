@@ -13,7 +13,8 @@ use glamx::DVec3;
 use sbbk_core::contact::TriangleContact;
 
 use super::query::ContactList;
-use super::shapes::{NEAR_NORMAL, TriangleSurfaceContact};
+use super::shapes::TriangleSurfaceContact;
+use super::tuning::NEAR_NORMAL;
 
 /// Returns true if the way along the normal of a face leads past its border. `distance`: to the
 /// border. `cosine`: between the way to the border and the normal.

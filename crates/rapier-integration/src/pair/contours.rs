@@ -14,25 +14,11 @@ use super::islands::{Crossing, IslandWay, OverlapIslands};
 use super::pose::PairPose;
 use super::shapes::{TriangleShapes, TriangleSurfaceContact};
 use super::surface::ALONG_NORMAL;
-use super::ways::SAME_SIDE;
-
-/// Least area vector of a contour, as a share of the area that its segments sweep around the
-/// middle. Higher: bodies that hook into each other keep the contacts of their triangles. Lower:
-/// contours push nowhere.
-const COHERENT: f64 = 0.5;
+use super::tuning::{COHERENT, DEPTH_PER_LENGTH, SAME_SIDE, UNEVEN};
 
 /// Distance from a contour to its points, as a share of its length. Higher: overlaps beside sharp
 /// edges are left out. Lower: rays meet the surface where they start.
 const INSET: f64 = 1.0e-3;
-
-/// Greatest gap of a closed contour, and distance of a flat one from its plane, as a share of its
-/// length. Higher: contours of surfaces with holes are closed, and those around edges flat. Lower:
-/// soups have no contours, and rounding makes flat faces uneven.
-const UNEVEN: f64 = 1e-3;
-
-/// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all
-/// their way. Lower: bodies deep in others turn and sink.
-const DEPTH_PER_LENGTH: f64 = 0.5;
 
 /// Greatest number of points of a contour. Higher: more time; lower: bodies turn about the chosen
 /// ones.

@@ -28,25 +28,9 @@ use sbbk_core::tree::{BATCH, LeafBatch, Tree};
 use super::field::Field;
 use super::pose::PairPose;
 use super::query::Candidate;
-use super::shapes::{DISTANT, Hint, NEAR_NORMAL, ShapeView, TriangleShape, TriangleShapes};
+use super::shapes::{Hint, ShapeView, TriangleShape, TriangleShapes};
+use super::tuning::{DISTANT, LEAST_REACH, MUCH_LESS, NEAR_NORMAL, REACH, REACH_PER_TRIANGLE};
 use crate::mesh::MeshView;
-
-/// Greatest [reach](TriangleShapes::reach) of fine meshes in filter distances: 0.04 radii. A body
-/// of one length unit has a radius of half a unit, and Rapier predicts 0.02 units by default.
-/// Higher: fine meshes cost more; lower: bodies come deeper into others before they meet.
-const REACH: f64 = 0.4;
-
-/// Least reach of fine meshes in filter distances: 0.01 radii. Higher: fine meshes cost more;
-/// lower: bodies turn and sink where they are pressed together.
-const LEAST_REACH: f64 = 0.1;
-
-/// Reach of fine meshes in sizes of their triangles. Higher: each triangle is near more others.
-/// Lower: meshes of a few thousand triangles have contacts late.
-const REACH_PER_TRIANGLE: f64 = 0.25;
-
-/// The reach by triangle size is used if it is below this share of the other reach. Higher: far
-/// contacts take more time than the smaller reach saves. Lower: fine meshes cost more.
-const MUCH_LESS: f64 = 0.75;
 
 /// Greatest product of the numbers of triangles near the other shape with which all pairs are
 /// candidates. Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD

@@ -17,18 +17,14 @@ use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
 use super::borders::is_past_border;
 use super::islands::OverlapIslands;
 use super::query::ContactList;
-use super::shapes::{NEAR_NORMAL, TriangleHit, TriangleShapes, TriangleSurfaceContact};
+use super::shapes::{TriangleHit, TriangleShapes, TriangleSurfaceContact};
 use super::surface::{SurfaceFilter, Verdict};
+use super::tuning::{NEAR_NORMAL, SAME_DIRECTION, SAME_FAR_DIRECTION};
 use crate::mesh::LazySurface;
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that
 /// are nearly parallel; lower: the contact is farther than the nearest one.
 const STEPS_TO_NEAREST: usize = 32;
-
-/// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher:
-/// thin plates with soft CCD turn through sheets. Lower: small bodies are stopped by triangles
-/// ahead.
-const SAME_FAR_DIRECTION: f64 = 0.97;
 
 /// Triangles of each mesh from which rays look ahead. Higher: more time. Lower: small parts of fine
 /// meshes are met late.
@@ -37,9 +33,6 @@ const RAYS_AHEAD: usize = 128;
 /// Square of the ratio of sizes from which the larger mesh does not look ahead. Higher: slow on
 /// large terrains. Lower: small parts meet the teeth of larger ones late.
 const MUCH_LARGER: Real = 16.0;
-
-/// Least cosine of directions that are one. Higher: more time.
-const ONE_DIRECTION: f64 = 0.99;
 
 impl TriangleShapes<'_> {
     /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way`:
@@ -102,7 +95,7 @@ impl TriangleShapes<'_> {
             let is_minimum = |filter: &SurfaceFilter<'_>| filter.is_local_minimum(contact);
             let counts = || is_near(contact) || self.with_filter(*pair, is_minimum) == Some(true);
             // Some hundreds of such directions fit on a sphere.
-            if !has_like(directions, contact.normal, ONE_DIRECTION) && counts() {
+            if !has_like(directions, contact.normal, SAME_DIRECTION) && counts() {
                 directions.push(contact.normal);
             }
         }

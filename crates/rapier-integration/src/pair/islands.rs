@@ -4,7 +4,8 @@ use sbbk_core::collections::UnionFind;
 use sbbk_core::surface::area_vector;
 
 use super::shapes::TriangleHit;
-use super::ways::{Directions, SAME_DIRECTION, SAME_SIDE, Ways, add_direction};
+use super::tuning::{OUTWARD, SAME_DIRECTION, SAME_SIDE};
+use super::ways::{Directions, Ways, add_direction};
 
 /// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
 /// contacts that push each island apart.
@@ -158,11 +159,6 @@ impl Crossing {
         Some([sign(0)?, sign(1)?])
     }
 }
-
-/// Share of the direction out of two triangles in the direction of their contact, if the contour of
-/// the overlap is not flat. Higher: bodies that are deep in each other are pushed aside. Lower:
-/// heavy loads press bodies deeper.
-const OUTWARD: f64 = 0.3;
 
 impl OverlapIslands {
     /// Begins the first pass of a query.

@@ -18,6 +18,7 @@ mod surface;
 mod triangle_contacts;
 mod triangle_points;
 mod triangles;
+mod tuning;
 mod update;
 mod ways;
 mod write;

@@ -12,55 +12,21 @@ use glamx::{Vec2, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::TrackedContact;
 
+use super::tuning::{
+    DEPTH_SHARE, EQUAL_DEPTH, FILTERED, HOVER, PATCH_SIZE, SAME_DIRECTION, SAME_FAR_DIRECTION,
+    SAME_NORMAL_OVER, SMALL_RADIUS,
+};
+
 /// Points of a patch. Rapier's solver uses no more.
 pub(super) const MOST_POINTS: usize = 4;
-
-/// Least cosine of normals of one patch. Higher: more points, and nested bowls are less calm;
-/// lower: gears lose speed.
-const SAME_NORMAL: Real = 0.99;
-
-/// Least cosine of normals of one patch of [far](PatchPlan::far) contacts. Higher: more points;
-/// lower: contacts about to touch are left out.
-const SAME_FAR_NORMAL: Real = 0.97;
-
-/// Least cosine of the normals of a contact and of one that it [hovers](PatchPlan::hover_distance)
-/// beside. Higher: more points in piles at rest; lower: contacts about to touch are left out.
-const SAME_NORMAL_OVER: Real = 0.9;
-
-/// [`PatchPlan::hover_distance`] as a share of the prediction distance. Higher: more points; lower:
-/// bodies in motion come deeper into others.
-const HOVER: Real = 0.1;
-
-/// Filter distance in radii of the smaller shape. Higher: plates that soft CCD sees turn through
-/// what they meet; lower: small bodies keep contacts at internal edges.
-pub(super) const FILTERED: Real = 0.1;
-
-/// [`PatchPlan::equal_depth`] as a share of the prediction distance. Higher: points that hover
-/// replace points that carry, and bodies rock; lower: thin plates turn through what they hit.
-pub(super) const EQUAL_DEPTH: Real = 0.02;
-
-/// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a
-/// step, so [`PatchPlan::equal_depth`] grows with the square of their ratio, up to the size of a
-/// patch. Higher: cones on uneven ground stay awake. Lower: coins stand on one arc of the rim, and
-/// turn through floors.
-const SMALL_RADIUS: Real = 20.0;
-
-/// Share of the depth of the deepest point that counts like [`PatchPlan::equal_depth`] where points
-/// are chosen. Higher: points that hover replace points that carry. Lower: thin discs stand on one
-/// arc of the rim, and turn through floors.
-const DEPTH_SHARE: Real = 0.5;
 
 /// [`PatchPlan::one_normal`]. Lower: threads of a screw lock.
 const ONE_NORMAL: Real = 0.99999;
 
-/// [`PatchPlan::size`] in radii of the smaller shape. Higher: legs of a table are left out; lower:
-/// a flat side is many patches, and points that move lose their data.
-const PATCH_SIZE: Real = 0.2;
-
 /// Distances and cosines by which contacts make patches.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct PatchPlan {
-    /// Filter distance of surfaces. A contact beyond it joins patches by [`SAME_FAR_NORMAL`]. A
+    /// Filter distance of surfaces. A contact beyond it joins patches by [`SAME_FAR_DIRECTION`]. A
     /// patch of such contacts is one manifold.
     pub(super) far: Real,
     /// Distance beyond which a contact hovers: near one that touches, it joins its patch by
@@ -186,7 +152,7 @@ impl Reduction {
             let first = seeds.len();
             for Member { summary, patch, .. } in members {
                 let is_far = summary.distance > plan.far;
-                let same_normal = if is_far { SAME_FAR_NORMAL } else { SAME_NORMAL };
+                let same_direction = if is_far { SAME_FAR_DIRECTION } else { SAME_DIRECTION };
                 let hovers = |seed: &ContactSummary| {
                     summary.distance > plan.hover_distance
                         && seed.distance <= 0.0
@@ -194,7 +160,7 @@ impl Reduction {
                 };
                 let is_like = |seed: &ContactSummary| {
                     let cosine = seed.normal.dot(summary.normal);
-                    cosine >= same_normal || cosine >= SAME_NORMAL_OVER && hovers(seed)
+                    cosine >= same_direction as Real || cosine >= SAME_NORMAL_OVER && hovers(seed)
                 };
                 let known = seeds[first..].iter().position(is_like);
                 *patch = known.map_or(seeds.len(), |i| first + i) as u32;

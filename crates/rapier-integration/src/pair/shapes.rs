@@ -20,21 +20,8 @@ use sbbk_core::volumes::rounding::gamma;
 
 use super::field::Field;
 use super::pose::{Moving, PairPose};
-use super::reduce::FILTERED;
+use super::tuning::FILTERED;
 use crate::mesh::{LazySurface, MeshFacets, MeshView, first_hit, leaves};
-
-/// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
-/// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
-/// with less warning.
-pub(super) const DISTANT: f64 = 0.25;
-
-/// Least cosine between the normal of a [`DISTANT`] contact and both triangle normals. Higher:
-/// smooth bodies lose contacts; lower: gears are braked.
-pub(super) const NEAR_NORMAL: f64 = 0.87;
-
-/// Depth up to which a shape counts as above the plane of a border triangle, in [`filter_unit`]s.
-/// Higher: rims do not carry what overhangs them. Lower: bodies stumble where meshes meet.
-pub(super) const LIP: f64 = 0.25;
 
 /// Distance, in sizes of the triangles, that rounding of poses to f32 may open between triangles
 /// that touch.

@@ -17,16 +17,11 @@ use super::islands::Crossing;
 use super::pose::PairPose;
 use super::query::ContactList;
 use super::shapes::{
-    LIP, NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape, TriangleShapes,
+    NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape, TriangleShapes,
     TriangleSurfaceContact, filter_distance, filter_unit,
 };
-use super::ways::SAME_SIDE;
+use super::tuning::{LEAN, LIP, ROOM_DEPTH, SAME_SIDE, SLAB, STICKS_OUT};
 use crate::mesh::{BEHIND, LazySurface, MeshView, is_covered};
-
-/// Greatest depth of a body's middle behind a sheet that still pushes it to the front, in half
-/// heights of the body. Higher: bodies from behind are pulled through; lower: bodies that hit a
-/// ground fast fall out below.
-const LEAN: f64 = 0.33;
 
 impl TriangleShapes<'_> {
     /// Returns the position of the other shape over the nearest point of a sheet, unless that is at
@@ -92,20 +87,6 @@ impl TriangleShapes<'_> {
         contacts.retain(|(_, hit)| hit.contact.normal.dot(away) > -SAME_SIDE);
     }
 }
-
-/// Half heights of a body that may stick out of a room that holds it. A room whose faces lead in
-/// holds a body whose middle is so far behind a wall. Higher: bodies deep in a solid stay there.
-/// Lower: fast bodies fall through the floors of rooms.
-const STICKS_OUT: Real = 0.5;
-
-/// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in
-/// tenths of its radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into
-/// solids.
-const ROOM_DEPTH: f64 = 0.5;
-
-/// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low
-/// halls. Lower: small fast bodies fall through floors and walls that are solids.
-const SLAB: Real = 0.1;
 
 /// Share of an f32 distance that is a lower bound of the exact one.
 const SURE: f64 = 0.99;

@@ -20,24 +20,14 @@ use sbbk_core::surface::{Around, Facets, Side, area_vector};
 
 use super::islands::{Crossing, SheetSide, Support};
 use super::shapes::{
-    ContactSource, DISTANT, LIP, NEAR_NORMAL, OverSheet, ShapeFacets, TriangleShapes,
-    TriangleSurfaceContact,
+    ContactSource, OverSheet, ShapeFacets, TriangleShapes, TriangleSurfaceContact,
 };
-use super::ways::SAME_SIDE;
+use super::tuning::{DISTANT, LIP, NEAR_NORMAL, SAME_SIDE, THIN, TRUSTED_DEPTH};
 use crate::mesh::BEHIND;
-
-/// Greatest depth of a contact of the first pass, in least translations of its triangles or, if
-/// more, in prediction distances. Parry's number for constrained normals. Higher: bodies are pushed
-/// out on their far sides; lower: more second passes.
-const TRUSTED_DEPTH: f64 = 5.0;
 
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are
 /// turned in vain; lower: slanted contacts keep their normals.
 pub(super) const ALONG_NORMAL: f64 = 0.999_999;
-
-/// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through
-/// sheets that face away from them. Lower: rods and plates sink through sheets.
-const THIN: f64 = 0.03;
 
 /// Length by which a ray between two triangles that have passed each other starts and ends within
 /// them, in their distance. Also the share of the way to the middle of a triangle at which a second

@@ -39,14 +39,9 @@ use super::shapes::{
 use super::sides::{HeldMesh, InsideTest};
 use super::surface::{SurfaceFilter, Verdict, leans};
 use super::triangle_points::{constrained_normal, write_triangle_points};
-use super::ways::RESTING_DEPTH;
+use super::tuning::{DEEPEST, RESTING_DEPTH};
 use crate::SbbkConfig;
 use crate::mesh::{Change, KnownMesh, LazySurface, use_trees};
-
-/// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until
-/// bodies have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep
-/// inside.
-const DEEPEST: f64 = 4.0;
 
 /// Least number of candidates of a chunk. Higher: threads wait for each other; lower: threads
 /// take turns for chunks of a few microseconds.

@@ -8,24 +8,7 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::reduce::EQUAL_DEPTH;
-
-/// Greatest depth of resting bodies, in filter distances: a fiftieth of the radius. Higher: bodies
-/// deep in others leave along one way. Lower: heavy bodies stop at gaps.
-pub(super) const RESTING_DEPTH: f64 = 0.2;
-
-/// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor
-/// let go. Lower: edges that cross push each other aside.
-pub(super) const ALIKE: f64 = 1.1;
-
-/// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in
-/// it; lower: contacts that do not push against each other are rejected.
-pub(super) const SAME_SIDE: f64 = 0.5;
-
-/// Cosine above which two normals of a triangle's contacts are one direction. Higher: a triangle
-/// that many others cross takes longer; lower: directions that push against each other are
-/// confused.
-pub(super) const SAME_DIRECTION: f64 = 0.99;
+use super::tuning::{ALIKE, EQUAL_DEPTH, SAME_DIRECTION};
 
 /// Directions of reliable contacts that are remembered for a group. Higher: slower where many
 /// differ. Lower: ways out are missed.

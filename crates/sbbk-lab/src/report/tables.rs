@@ -6,8 +6,8 @@
 //! * FUNCTION, which may be left out, joins the numbers of all rows. `sum` and `max` speak for
 //!   themselves. `ms` is the largest of numbers in microseconds. `wrong` counts wrong contacts.
 //!   `ratio` divides stock's numbers by the backend's and takes the geometric mean. `least` takes
-//!   the smallest ratio. `boxes` is `ratio` for the backend `aabb-only`. `count` counts the numbers,
-//!   `zeros` those that are 0, and `slower` those in microseconds that are above stock's.
+//!   the smallest ratio. `boxes` is `ratio` for the backend `aabb-only`. `count` counts the
+//!   numbers, `zeros` those that are 0, and `slower` those in microseconds that are above stock's.
 //! * BACKEND: without it, the one that the header gives to the column.
 //! * SCENE: parts, joined by ` & `, of `STUDY, KEY VALUE, KEY VALUE`; each must end before a comma.
 //! * PATH: quantity and statistic, such as `step.median`.

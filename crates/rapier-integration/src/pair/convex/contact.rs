@@ -11,10 +11,6 @@ use sbbk_core::contact::convex::{
 use super::parts::PlacedPart;
 use super::shape::{ConvexShape, KeptHull};
 
-/// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
-/// stumble over walls within a mesh.
-pub(super) const SAME_PUSH: f64 = 0.7;
-
 /// The contact of a triangle and a part without its rounding radius, in the frame of the part.
 #[derive(Copy, Clone)]
 pub(crate) struct PartContact {

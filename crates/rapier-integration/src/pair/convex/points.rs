@@ -17,6 +17,7 @@ use sbbk_core::volumes::rounding::gamma;
 use super::contact::{NormalSource, PartContact};
 use super::ghosts::ROUNDED;
 use super::shape::ConvexShape;
+use crate::pair::tuning::ALONG_BORDER;
 
 /// A contact point in the frame of the shape, without the rounding radius.
 pub(super) struct PointPair {
@@ -112,11 +113,6 @@ fn overlap_points(
     }
     has_closest
 }
-
-/// An end of an edge counts if its distance from the border exceeds the least one by less than this
-/// share. Higher: rods that stick out over a cliff are held up. Lower: rods that roll over a border
-/// turn.
-const ALONG_BORDER: f64 = 0.1;
 
 /// Calls `found` with the ends of the part of a shape's edge that is along a border. The nearest
 /// points alone would turn a rod that rolls from mesh to mesh. `normal`: of the face at the border.

@@ -1,9 +1,9 @@
 //! Push-outs: contacts that move convex shapes out of solids
 //! ([`SbbkConfig::convex_leave_solids`](crate::SbbkConfig::convex_leave_solids)).
 //!
-//! A contact with a triangle separates by the least translation. The least translation points inward
-//! if more than half of the shape is inside. A push-out then replaces all contacts of the part.
-//! It leads out through the face that is nearest to the middle of the part.
+//! A contact with a triangle separates by the least translation. The least translation points
+//! inward if more than half of the shape is inside. A push-out then replaces all contacts of the
+//! part. It leads out through the face that is nearest to the middle of the part.
 
 use glamx::DVec3;
 use sbbk_core::contact::Feature;

@@ -10,7 +10,7 @@ use sbbk_core::surface::strays::seam;
 use sbbk_core::surface::{area_vector, longest_side};
 use sbbk_core::volumes::Sphere;
 
-use super::contact::{NormalSource, PartContact, SAME_PUSH, core_contact, core_support};
+use super::contact::{NormalSource, PartContact, core_contact, core_support};
 use super::pair::ConvexPair;
 use super::parts::{Part, PlacedPart};
 use super::points::{FACE, PointPair, contact_points, is_over, ray_length};
@@ -18,16 +18,7 @@ use super::shape::{ConvexShape, KeptHull};
 use crate::pair::borders::is_past_border;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::{ContactSummary, PatchPlan};
-
-/// Least cosine between the normals of a contact and of a face whose normal it takes. Higher:
-/// shapes deep in a mesh stumble over internal edges. Lower: shapes half within a wall are pushed
-/// through it.
-const AGAINST: f64 = -0.05;
-
-/// Greatest depth along the normal of a face, as a share of the height of the part, that never
-/// shows a part beyond the face. Higher: shapes over an edge of a box are pushed in. Lower: tips
-/// stumble over internal edges.
-const HARDLY_BEHIND: f64 = 0.1;
+use crate::pair::tuning::{AGAINST, BORDER_DEPTH, HARDLY_BEHIND, SAME_PUSH};
 
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {
@@ -56,10 +47,6 @@ const UPRIGHT: f64 = 1.0e-3;
 /// Sine of a corner's direction up to which the corner counts as level. Higher: ghosts stay;
 /// lower: rounding of the normals of curved shapes counts.
 const LEVEL: f64 = 2.0e-3;
-
-/// Depth, in prediction distances, up to which a part counts as above the face at a border. Higher:
-/// rims do not carry what overhangs them. Lower: fast bodies stumble where meshes meet.
-const BORDER_DEPTH: f64 = 0.5;
 
 /// Barycentric coordinate from which a point counts as within a triangle. Higher: rounding hides
 /// walls from what stands at their feet. Lower: walls have contacts above them.

@@ -5,15 +5,14 @@ use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{Side, SurfaceKind, area_vector};
 
-use super::contact::{Hit, NormalSource, PartContact, SAME_PUSH};
+use super::contact::{Hit, NormalSource, PartContact};
 use super::points::contact_points;
 use super::query::{ConvexQuery, DroppedContacts, PlacedParts};
 use crate::mesh::{LazySurface, is_covered};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{filter_distance, filter_unit};
-use crate::pair::ways::{
-    RESTING_DEPTH, SAME_DIRECTION, SAME_SIDE, Ways, equal_height, greatest_overlap,
-};
+use crate::pair::tuning::{RESTING_DEPTH, SAME_DIRECTION, SAME_PUSH, SAME_SIDE};
+use crate::pair::ways::{Ways, equal_height, greatest_overlap};
 
 /// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher:
 /// bodies catch on walls behind the edge that they slide over. Lower: rounding decides about

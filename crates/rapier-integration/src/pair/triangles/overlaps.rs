@@ -11,7 +11,8 @@ use crate::pair::islands::{Crossing, IslandWay, OverlapIslands};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::pair::surface::SurfaceFilter;
-use crate::pair::ways::{ALIKE, SAME_DIRECTION, greatest_overlap};
+use crate::pair::tuning::{ALIKE, SAME_DIRECTION};
+use crate::pair::ways::greatest_overlap;
 
 /// Least number of crossings of a chunk. Higher: threads wait for each other; lower: threads take
 /// turns for chunks of a few microseconds.

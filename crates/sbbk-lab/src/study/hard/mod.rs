@@ -1,8 +1,8 @@
 //! Hard scenes: whole worlds of meshes that stack, nest, mesh, sink in and fly.
 //!
 //! Stock Rapier and SBBK run each scene, with plain meshes and with
-//! `TriMeshFlags::FIX_INTERNAL_EDGES`. Stock also runs the scene with convex shapes as a control, if
-//! these can replace the meshes. Figures with limits judge all runs alike.
+//! `TriMeshFlags::FIX_INTERNAL_EDGES`. Stock also runs the scene with convex shapes as a control,
+//! if these can replace the meshes. Figures with limits judge all runs alike.
 //!
 //! Time steps are 1/60 s, gravity 9.81 units/s², and all parameters Rapier's defaults, unless a
 //! scene says otherwise.
