@@ -1,4 +1,4 @@
-//! The numbers that choose contacts and patches. None depends on the unit of length.
+//! The numbers that choose contacts and patches. They do not depend on the unit of length.
 //!
 //! Numbers that bound rounding, memory or time stand where they are used.
 
