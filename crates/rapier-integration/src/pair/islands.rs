@@ -97,8 +97,6 @@ pub(super) struct Crossing {
     pub(super) is_crossing: bool,
     /// True if they have passed each other by so little that rounding decides.
     pub(super) is_touching: bool,
-    /// Greatest depth of a contact that needs no proof that a point is far inside.
-    pub(super) greatest: f64,
     /// True if the contact of the pair leads out.
     pub(super) is_reliable: bool,
     /// Normal of this contact, from mesh 1 to mesh 2.

@@ -13,7 +13,6 @@
 //! ([`OverlapIslands`](super::islands::OverlapIslands)).
 
 use glamx::{DVec3, Vec3};
-use parry3d::math::Real;
 use sbbk_core::contact::{Feature, Outward, TriangleContact};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets, Side, area_vector};
@@ -22,8 +21,7 @@ use super::islands::{Crossing, SheetSide, Support};
 use super::shapes::{
     ContactSource, OverSheet, ShapeFacets, TriangleShapes, TriangleSurfaceContact,
 };
-use super::tuning::{DISTANT, LIP, NEAR_NORMAL, SAME_SIDE, THIN, TRUSTED_DEPTH};
-use crate::mesh::BEHIND;
+use super::tuning::{DISTANT, LIP, NEAR_NORMAL, SAME_SIDE, THIN};
 
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are
 /// turned in vain; lower: slanted contacts keep their normals.
@@ -222,13 +220,11 @@ impl<'a> SurfaceFilter<'a> {
 
     /// Returns the crossing of triangles that cross or have passed each other, without a contact.
     fn crossing(&self, contact: &TriangleContact) -> Crossing {
-        let shallow = self.shapes.filter_unit();
         let is_crossing = contact.features.is_crossing();
         Crossing {
             pair: self.pair,
             is_crossing,
             is_touching: !is_crossing && self.is_touching(contact, SIDE_ROUNDING),
-            greatest: TRUSTED_DEPTH * contact.distance.abs().max(shallow),
             is_reliable: false,
             normal: DVec3::ZERO,
             depth: 0.0,
@@ -244,7 +240,7 @@ impl<'a> SurfaceFilter<'a> {
     /// the far side of a thin wall, behind which the sheet is.
     pub(super) fn find_extremal(&self, crossing: &mut Crossing) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let good = self.outward_axes().extremal(ends, crossing.greatest);
+        let good = self.outward_axes().extremal(ends);
         crossing.is_reliable = good.is_some();
         (crossing.normal, crossing.depth) =
             good.map_or_else(Default::default, |good| (good.normal, -good.distance));
@@ -312,11 +308,8 @@ impl<'a> SurfaceFilter<'a> {
         let agrees = |normal: DVec3| support.agrees(normal);
         let contact = self.outward_axes().least(ends, agrees)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
-        let is_shallow = contact.distance >= -crossing.greatest;
-        if !is_overlap || !is_shallow && !self.is_far_inside(&contact) {
-            return None;
-        }
-        Some(TriangleSurfaceContact { contact, source: ContactSource::OutwardAxis })
+        let source = ContactSource::OutwardAxis;
+        is_overlap.then_some(TriangleSurfaceContact { contact, source })
     }
 
     /// Returns the axes that lead out of the shapes.
@@ -442,18 +435,6 @@ impl<'a> SurfaceFilter<'a> {
     /// which its surface may end.
     fn least_square(&self, i: usize) -> f64 {
         self.surfaces[i].facets.cones(self.pair[i]).least_square(false)
-    }
-
-    /// Returns true if a contact is deep since a point is far inside, not since this triangle is on
-    /// the far side of its body.
-    fn is_far_inside(&self, contact: &TriangleContact) -> bool {
-        let within = (-contact.distance / TRUSTED_DEPTH) as Real;
-        (0..2).any(|i| {
-            let point = self.in_shape(i, [contact.point2, contact.point1][i]).as_vec3();
-            self.shapes[i].nearest(point).is_some_and(|(nearest, behind)| {
-                behind >= BEHIND && nearest.distance(point) > within
-            })
-        })
     }
 }
 

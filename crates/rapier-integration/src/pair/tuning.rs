@@ -22,12 +22,9 @@ pub(super) const SAME_NORMAL_OVER: Real = 0.9;
 /// smooth bodies lose contacts; lower: gears are braked.
 pub(super) const NEAR_NORMAL: f64 = 0.87;
 
-/// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
-/// stumble over walls within a mesh.
-pub(super) const SAME_PUSH: f64 = 0.7;
-
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in
-/// it; lower: contacts that do not push against each other are rejected.
+/// it. Lower: contacts that do not push against each other are rejected, and bodies stumble over
+/// walls within a mesh.
 pub(super) const SAME_SIDE: f64 = 0.5;
 
 /// Least cosine between the normals of a contact and of a face whose normal it takes. Higher:
@@ -41,11 +38,6 @@ pub(super) const AGAINST: f64 = -0.05;
 /// bodies have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep
 /// inside.
 pub(super) const DEEPEST: f64 = 4.0;
-
-/// Greatest depth of a contact of the first pass, in least translations of its triangles or, if
-/// more, in prediction distances. Parry's number for constrained normals. Higher: bodies are pushed
-/// out on their far sides; lower: more second passes.
-pub(super) const TRUSTED_DEPTH: f64 = 5.0;
 
 /// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in
 /// tenths of its radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into

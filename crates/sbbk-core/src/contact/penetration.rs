@@ -61,7 +61,7 @@ impl<'t> Outward<'t> {
         Self { triangles, normals, signs, is_solid, cones }
     }
 
-    /// Returns the contact along the extremal axis of least overlap, if that is at most `most`.
+    /// Returns the contact along the extremal axis of least overlap.
     ///
     /// `is_extremal` returns true if no neighbour of a feature of triangle 1 (0) or 2 (1) is
     /// farther in a direction. The deepest points give the distance; if these show less than the
@@ -69,12 +69,10 @@ impl<'t> Outward<'t> {
     pub fn extremal(
         &self,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-        most: f64,
     ) -> Option<TriangleContact> {
-        let (gap, normal) = self.extremal_axis(most / SHOWN, is_extremal)?;
+        let (gap, normal) = self.extremal_axis(is_extremal)?;
         let contact = along(self.triangles.each_ref(), normal)?;
-        let is_shown = contact.distance <= SHOWN * gap && contact.distance >= -most;
-        is_shown.then_some(contact)
+        (contact.distance <= SHOWN * gap).then_some(contact)
     }
 
     /// Returns the contact along the outward axis of least overlap, if a contact with that normal
@@ -95,7 +93,7 @@ impl<'t> Outward<'t> {
             ControlFlow::Continue(())
         });
         let widest = widest?;
-        let extremal = self.extremal_axis(f64::INFINITY, is_extremal);
+        let extremal = self.extremal_axis(is_extremal);
         let (_, normal) = extremal.or_else(|| self.least_axis(widest))?;
         may_count(normal).then(|| along(self.triangles.each_ref(), normal))?
     }
@@ -114,10 +112,9 @@ impl<'t> Outward<'t> {
         height * height <= (1.0 - self.cones[cone] + ROUNDING) * edge.length_squared()
     }
 
-    /// Returns the extremal axis of least overlap, if that is at most `most`.
+    /// Returns the extremal axis of least overlap.
     fn extremal_axis(
         &self,
-        most: f64,
         is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
     ) -> Option<OutwardAxis> {
         if self.are_cones_apart() {
@@ -128,8 +125,7 @@ impl<'t> Outward<'t> {
             let square = direction.length_squared();
             // Before the division: most directions end here.
             if (0..2).all(|i| heights[i] * heights[i] >= self.cones[i] * square) {
-                let axis = self.axis(direction);
-                axes.extend((axis.0 >= -most).then_some(axis));
+                axes.push(self.axis(direction));
             }
             ControlFlow::Continue(())
         });

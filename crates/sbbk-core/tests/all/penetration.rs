@@ -25,12 +25,8 @@ fn penetration(
         let along = contact_along([t1, t2], found.normal);
         assert_eq!(along, Some(found));
     }
-    let find = |most| pair.extremal(&ends, most);
-    let extremal = find(1e9);
+    let extremal = pair.extremal(&ends);
     assert!(extremal.is_none() || extremal == found);
-    for most in [0.001, 0.1, 10.0] {
-        assert_eq!(find(most), extremal.filter(|contact| contact.distance >= -most));
-    }
     found.map(|contact| (contact, extremal.is_some()))
 }
 

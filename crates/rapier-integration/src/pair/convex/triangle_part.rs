@@ -18,7 +18,7 @@ use super::shape::{ConvexShape, KeptHull};
 use crate::pair::borders::is_past_border;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::{ContactSummary, PatchPlan};
-use crate::pair::tuning::{AGAINST, BORDER_DEPTH, HARDLY_BEHIND, SAME_PUSH};
+use crate::pair::tuning::{AGAINST, BORDER_DEPTH, HARDLY_BEHIND, SAME_SIDE};
 
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {
@@ -288,7 +288,7 @@ impl TrianglePartPair<'_> {
         let corners = &self.placed.in_part(self.corners);
         let wall = self.face_contact(corners)?;
         let depth = f64::from(self.part.shape.radius()) - floor.distance;
-        if depth <= 0.0 || wall.normal.dot(floor.normal) >= SAME_PUSH {
+        if depth <= 0.0 || wall.normal.dot(floor.normal) >= SAME_SIDE {
             return None;
         }
         // Each triangle is in front of the other one.
@@ -345,7 +345,7 @@ fn outward(corners @ [a, ..]: &[DVec3; 3], other: &[DVec3; 3]) -> Option<DVec3> 
 }
 
 /// Returns a triangle that halves a wedge and ends at its edge. It reaches beyond a ball. `points`
-/// are on the sides with these normals. `None` if both push the [same way](SAME_PUSH).
+/// are on the sides with these normals. `None` if both push the [same way](SAME_SIDE).
 fn within_edge(
     ball: &Sphere,
     normals @ [one, other]: [DVec3; 2],
@@ -354,7 +354,7 @@ fn within_edge(
     /// Radii of the ball up to which the triangle reaches. Higher: less exact. Lower: shapes pass
     /// its ends.
     const WEDGE_REACH: f64 = 8.0;
-    if one.dot(other) >= SAME_PUSH {
+    if one.dot(other) >= SAME_SIDE {
         return None;
     }
     let along = one.cross(other);

@@ -11,7 +11,7 @@ use super::query::{ConvexQuery, DroppedContacts, PlacedParts};
 use crate::mesh::{LazySurface, is_covered};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{filter_distance, filter_unit};
-use crate::pair::tuning::{RESTING_DEPTH, SAME_DIRECTION, SAME_PUSH, SAME_SIDE};
+use crate::pair::tuning::{RESTING_DEPTH, SAME_DIRECTION, SAME_SIDE};
 use crate::pair::ways::{Ways, equal_height, greatest_overlap};
 
 /// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher:
@@ -35,7 +35,7 @@ impl ConvexQuery<'_> {
         dropped: &mut DroppedContacts,
     ) {
         let Some(surface) = self.surface.as_ref() else { return };
-        if !self.push_different_ways(contacts, SAME_PUSH, at_hand)
+        if !self.push_different_ways(contacts, SAME_SIDE, at_hand)
             || surface.kind() == SurfaceKind::Sheet
         {
             return;

@@ -9,7 +9,6 @@ fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>)
         pair,
         is_crossing: true,
         is_touching: false,
-        greatest: 1.0,
         is_reliable,
         normal,
         depth,

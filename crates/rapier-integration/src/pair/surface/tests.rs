@@ -1,4 +1,4 @@
-use parry3d::math::{Pose, Vector};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::shape::{Ball, SharedShape, TriMesh};
 use sbbk_core::contact::contact;
 use sbbk_core::traverse::DescentCounts;
