@@ -131,3 +131,31 @@ fn small_fast_cubes_stay_on_a_plate() {
         }
     }
 }
+
+/// Brackets of two open plates on open floors: on one plate, or on two edges. Would catch plates
+/// without contacts, as they have passed the floor: the bracket tips through.
+#[test]
+fn bent_sheets_rest_on_open_floors() {
+    let plate = mesh::floor(0.5, 4);
+    let upright = plate.clone().mapped(|at| Vec3::new(-0.25, at.x + 0.25, at.z));
+    let bracket =
+        Mesh::merged("bracket", &[plate, upright]).mapped(|at| at + Vec3::new(0.05, -0.2, 0.0));
+    let mass = MassProperties::from_cuboid(1.0, Vec3::splat(0.25));
+    let collider = ColliderBuilder::new(bracket.shape()).mass_properties(mass);
+    let mut random = Rand32::new(7);
+    for cells in [1, 6, 40] {
+        for turned in [0.0, FRAC_PI_2, 0.75 * PI].repeat(20) {
+            let mut within = |size: Real| size * (2.0 * random.rand_float() - 1.0);
+            let turn = Quat::from_rotation_y(within(PI)) * Quat::from_rotation_x(within(0.03));
+            let turn = turn * Quat::from_rotation_z(within(0.03) + turned);
+            let place = Pose::from_parts(Vec3::new(within(1.5), 0.0, within(1.5)), turn);
+            let low = lowest(&bracket, &place);
+            let pose = Pose::from_parts(place.translation + (0.002 - low) * Vec3::Y, turn);
+            let start = RigidBodyBuilder::dynamic().pose(pose);
+            let floor = ColliderBuilder::new(mesh::floor(6.0, cells).shape());
+            let end = watched(300, world(floor), start, collider.clone(), |_| ());
+            let depth = -lowest(&bracket, end.position());
+            assert!(depth < 0.01, "{depth} deep in {cells} cells, turned by {turned}");
+        }
+    }
+}

@@ -95,6 +95,9 @@ pub(super) struct Crossing {
     pub(super) pair: [u32; 2],
     /// False if they have passed each other.
     pub(super) is_crossing: bool,
+    /// True if both are of sheets, and have passed each other. Only sheets that cross have such
+    /// triangles.
+    pub(super) are_passed_sheets: bool,
     /// True if they have passed each other by so little that rounding decides.
     pub(super) is_touching: bool,
     /// True if the contact of the pair leads out.
@@ -218,6 +221,13 @@ impl OverlapIslands {
             let Some((way, depth)) = ways.least(crossing.island) else { continue };
             add_direction(one_ways, way, depth);
             crossing.is_rejected |= way.dot(crossing.normal) < SAME_SIDE;
+        }
+    }
+
+    /// Drops sheets that have passed each other unless triangles cross.
+    pub(super) fn keep_passed_if_crossing(&mut self) {
+        if !self.crossings.iter().any(|crossing| crossing.is_crossing) {
+            self.crossings.retain(|crossing| !crossing.are_passed_sheets);
         }
     }
 

@@ -21,7 +21,7 @@ use super::islands::{Crossing, SheetSide, Support};
 use super::shapes::{
     ContactSource, OverSheet, ShapeFacets, TriangleShapes, TriangleSurfaceContact,
 };
-use super::tuning::{DISTANT, LIP, NEAR_NORMAL, SAME_SIDE, THIN};
+use super::tuning::{DISTANT, LIP, NEAR_NORMAL, RESTING_DEPTH, SAME_SIDE, THIN};
 
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are
 /// turned in vain; lower: slanted contacts keep their normals.
@@ -121,7 +121,8 @@ impl<'a> SurfaceFilter<'a> {
                 return Verdict::Contact(of_triangles, upright);
             }
             if !self.have_passed(is_first_minimum, &contact) {
-                return Verdict::None;
+                let passed = self.passed_sheets(&contact);
+                return passed.map_or(Verdict::None, Verdict::Crossing);
             }
         }
         Verdict::Crossing(self.crossing(&contact))
@@ -139,6 +140,26 @@ impl<'a> SurfaceFilter<'a> {
             && self.local.corners.iter().any(|corners| !leans(corners, contact.normal))
             && (0..2).all(|i| !is_solid[i] || points_inside(i))
             && self.is_way_inside(is_solid, contact)
+    }
+
+    /// Returns the crossing of two sheets that have passed each other a little. The smaller one goes
+    /// back to the side of its middle.
+    fn passed_sheets(&self, contact: &TriangleContact) -> Option<Crossing> {
+        if contact.distance > RESTING_DEPTH * self.shapes.filter_distance
+            || self.are_solid() != [false; 2]
+            || self.local.corners.iter().any(|corners| leans(corners, contact.normal))
+        {
+            return None;
+        }
+        let crossing = self.crossing(contact);
+        let sheet = crossing.sheet.filter(|sheet| sheet.is_pushed_through(contact.normal))?;
+        sheet.shape?;
+        let normals = self.local.corners.each_ref().map(area_vector);
+        let outward = [0, 1].map(|i| {
+            let out = [-contact.normal, contact.normal][i];
+            Some(normals[i].dot(out).signum())
+        });
+        Some(Crossing { outward, are_passed_sheets: true, ..crossing })
     }
 
     /// Returns true if the other point of a contact is in a solid that does not end before. If both
@@ -224,6 +245,7 @@ impl<'a> SurfaceFilter<'a> {
         Crossing {
             pair: self.pair,
             is_crossing,
+            are_passed_sheets: false,
             is_touching: !is_crossing && self.is_touching(contact, SIDE_ROUNDING),
             is_reliable: false,
             normal: DVec3::ZERO,
@@ -240,7 +262,7 @@ impl<'a> SurfaceFilter<'a> {
     /// the far side of a thin wall, behind which the sheet is.
     pub(super) fn find_extremal(&self, crossing: &mut Crossing) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
-        let good = self.outward_axes().extremal(ends);
+        let good = self.outward_axes(crossing).extremal(ends);
         crossing.is_reliable = good.is_some();
         (crossing.normal, crossing.depth) =
             good.map_or_else(Default::default, |good| (good.normal, -good.distance));
@@ -306,16 +328,16 @@ impl<'a> SurfaceFilter<'a> {
     ) -> Option<TriangleSurfaceContact> {
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(i, feature, axis);
         let agrees = |normal: DVec3| support.agrees(normal);
-        let contact = self.outward_axes().least(ends, agrees)?;
+        let contact = self.outward_axes(crossing).least(ends, agrees)?;
         let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
         let source = ContactSource::OutwardAxis;
         is_overlap.then_some(TriangleSurfaceContact { contact, source })
     }
 
     /// Returns the axes that lead out of the shapes.
-    fn outward_axes(&self) -> Outward<'_> {
+    fn outward_axes(&self, crossing: &Crossing) -> Outward<'_> {
         let cones = [0, 1].map(|i| self.least_square(i));
-        Outward::new(self.local.corners.each_ref(), self.outward_signs(), cones)
+        Outward::new(self.local.corners.each_ref(), crossing.outward, cones)
     }
 
     /// Returns the signs with which the normals of the triangles lead out of solids; `None` for

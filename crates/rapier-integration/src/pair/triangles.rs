@@ -288,6 +288,7 @@ impl PairQuery for TriangleQuery<'_> {
             chunk.iter_mut().for_each(|candidate| self.first_pass(candidate, limits, first));
         };
         in_chunks(candidates, LEAST_CANDIDATES, first, &pass);
+        first.islands.keep_passed_if_crossing();
         self.add_passing(first);
         std::mem::swap(&mut first.contacts, contacts);
         let FirstPass { islands, is_near, upright, .. } = first;
