@@ -98,7 +98,15 @@ impl MeshFacets<'_> {
     /// Returns true if the winding of a triangle tells the front of a sheet.
     pub(crate) fn has_front(self, triangle: u32) -> bool {
         match self.twins {
-            Twins::All(surface, _) => surface.is_oriented() || has_front(self.mesh, triangle),
+            Twins::All(surface, _) if surface.is_oriented() => true,
+            Twins::All(_, flags) => {
+                let flags = &flags[triangle as usize];
+                let has_front = flags.may_have_front() && has_front(self.mesh, triangle);
+                if !has_front {
+                    flags.set_no_front();
+                }
+                has_front
+            }
             Twins::Near(known) => known.of(self.mesh, triangle).has_front(),
         }
     }

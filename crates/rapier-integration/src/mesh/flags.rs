@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{MinimumCones, Side};
 
-/// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], and its
-/// [`MinimumCones`].
+/// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], its
+/// [`MinimumCones`], and a missing front.
 #[derive(Debug, Default)]
 pub(crate) struct TriangleFlags(AtomicU32);
 
@@ -14,6 +14,7 @@ pub(crate) struct TriangleFlags(AtomicU32);
 const SIDES: [Side; 4] = [Side::Outer, Side::Turned, Side::Inner, Side::Sheet];
 
 impl TriangleFlags {
+    const HAS_NO_FRONT: u32 = 1 << 6;
     const HAS_SIDE: u32 = 1 << 7;
 
     fn bits(feature: Feature) -> [u32; 2] {
@@ -39,6 +40,15 @@ impl TriangleFlags {
 
     pub(super) fn set_side(&self, side: Side) {
         self.0.fetch_or(Self::HAS_SIDE | (side as u32) << 14, Ordering::Relaxed);
+    }
+
+    /// Returns false if a search has found no front.
+    pub(super) fn may_have_front(&self) -> bool {
+        self.0.load(Ordering::Relaxed) & Self::HAS_NO_FRONT == 0
+    }
+
+    pub(super) fn set_no_front(&self) {
+        self.0.fetch_or(Self::HAS_NO_FRONT, Ordering::Relaxed);
     }
 
     #[inline]

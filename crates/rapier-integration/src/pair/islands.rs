@@ -95,9 +95,6 @@ pub(super) struct Crossing {
     pub(super) pair: [u32; 2],
     /// False if they have passed each other.
     pub(super) is_crossing: bool,
-    /// True if both are of sheets, and have passed each other. Only sheets that cross have such
-    /// triangles.
-    pub(super) are_passed_sheets: bool,
     /// True if they have passed each other by so little that rounding decides.
     pub(super) is_touching: bool,
     /// True if the contact of the pair leads out.
@@ -106,7 +103,8 @@ pub(super) struct Crossing {
     pub(super) normal: DVec3,
     /// Depth of this contact.
     pub(super) depth: f64,
-    /// Signs with which the normals of the triangles lead out of the shapes; `None` for a sheet.
+    /// Signs with which the normals of the triangles lead out of the shapes. `None` for a sheet,
+    /// unless two sheets have passed each other.
     pub(super) outward: [Option<f64>; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
@@ -141,6 +139,11 @@ impl Crossing {
     /// Returns true if the contact of the pair is reliable and pushes the right way.
     pub(super) fn is_fine(&self) -> bool {
         self.is_reliable && !self.is_rejected
+    }
+
+    /// Returns true for triangles of two sheets that have passed each other.
+    fn are_passed_sheets(&self) -> bool {
+        self.sheet.is_some() && self.outward.iter().all(Option::is_some)
     }
 
     /// Returns the unit normals of the triangles that lead out of the shapes, if these are known.
@@ -227,7 +230,7 @@ impl OverlapIslands {
     /// Drops sheets that have passed each other unless triangles cross.
     pub(super) fn keep_passed_if_crossing(&mut self) {
         if !self.crossings.iter().any(|crossing| crossing.is_crossing) {
-            self.crossings.retain(|crossing| !crossing.are_passed_sheets);
+            self.crossings.retain(|crossing| !crossing.are_passed_sheets());
         }
     }
 

@@ -46,10 +46,16 @@ impl TriangleShapes<'_> {
         })
     }
 
-    /// Returns the height over the front of a sheet, with a preference for the front.
+    /// Returns the height over the front of a sheet, with a preference for the front, if there is
+    /// one.
     pub(super) fn leaning(&self, over: OverSheet, sheet: usize, triangle: u32) -> f64 {
+        self.over_front(over, sheet, triangle).unwrap_or(over.height)
+    }
+
+    /// Returns the height with the preference. `None` without a front.
+    fn over_front(&self, over: OverSheet, sheet: usize, triangle: u32) -> Option<f64> {
         let has_front = self[sheet].has_front(triangle);
-        if has_front { over.height + LEAN * over.half_height } else { over.height }
+        has_front.then_some(over.height + LEAN * over.half_height)
     }
 
     /// Returns the first triangle that crosses a sheet, and the position of the other shape over
@@ -65,8 +71,7 @@ impl TriangleShapes<'_> {
     /// little, and is not in doubt.
     pub(super) fn is_side_doubtful(&self, crossings: &[Crossing]) -> bool {
         let Some((pair, sheet, over)) = self.crossed_sheet(crossings) else { return false };
-        let triangle = pair[sheet];
-        if self[sheet].has_front(triangle) && self.leaning(over, sheet, triangle) > 0.0 {
+        if self.over_front(over, sheet, pair[sheet]).is_some_and(|height| height > 0.0) {
             return false;
         }
         let OverSheet { height, half_height, .. } = over;

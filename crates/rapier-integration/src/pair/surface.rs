@@ -21,7 +21,8 @@ use super::islands::{Crossing, SheetSide, Support};
 use super::shapes::{
     ContactSource, OverSheet, ShapeFacets, TriangleShapes, TriangleSurfaceContact,
 };
-use super::tuning::{DISTANT, LIP, NEAR_NORMAL, RESTING_DEPTH, SAME_SIDE, THIN};
+use super::tuning::{DISTANT, LIP, NEAR_NORMAL, SAME_SIDE, THIN};
+use super::ways::resting_depth;
 
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are
 /// turned in vain; lower: slanted contacts keep their normals.
@@ -145,7 +146,7 @@ impl<'a> SurfaceFilter<'a> {
     /// Returns the crossing of two sheets that have passed each other a little. The smaller one goes
     /// back to the side of its middle.
     fn passed_sheets(&self, contact: &TriangleContact) -> Option<Crossing> {
-        if contact.distance > RESTING_DEPTH * self.shapes.filter_distance
+        if contact.distance > resting_depth(self.shapes.filter_distance)
             || self.are_solid() != [false; 2]
             || self.local.corners.iter().any(|corners| leans(corners, contact.normal))
         {
@@ -159,7 +160,7 @@ impl<'a> SurfaceFilter<'a> {
             let out = [-contact.normal, contact.normal][i];
             Some(normals[i].dot(out).signum())
         });
-        Some(Crossing { outward, are_passed_sheets: true, ..crossing })
+        Some(Crossing { outward, ..crossing })
     }
 
     /// Returns true if the other point of a contact is in a solid that does not end before. If both
@@ -245,7 +246,6 @@ impl<'a> SurfaceFilter<'a> {
         Crossing {
             pair: self.pair,
             is_crossing,
-            are_passed_sheets: false,
             is_touching: !is_crossing && self.is_touching(contact, SIDE_ROUNDING),
             is_reliable: false,
             normal: DVec3::ZERO,

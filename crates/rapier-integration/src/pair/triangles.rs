@@ -39,7 +39,8 @@ use super::shapes::{
 use super::sides::{HeldMesh, InsideTest};
 use super::surface::{SurfaceFilter, Verdict, leans};
 use super::triangle_points::{constrained_normal, write_triangle_points};
-use super::tuning::{DEEPEST, RESTING_DEPTH};
+use super::tuning::DEEPEST;
+use super::ways::resting_depth;
 use crate::SbbkConfig;
 use crate::mesh::{Change, KnownMesh, LazySurface, use_trees};
 
@@ -299,7 +300,7 @@ impl PairQuery for TriangleQuery<'_> {
         if !islands.crossings.is_empty() {
             self.add_island_contacts(islands, contours, contacts);
         }
-        let small = RESTING_DEPTH * self.shapes.filter_distance;
+        let small = resting_depth(self.shapes.filter_distance);
         if islands.settle_one_ways(small, |pair, way, length| self.is_parted(pair, way, length)) {
             self.second_pass(islands, contacts);
         }

@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::tuning::{ALIKE, EQUAL_DEPTH, SAME_DIRECTION};
+use super::tuning::{ALIKE, EQUAL_DEPTH, RESTING_DEPTH, SAME_DIRECTION};
 
 /// Directions of reliable contacts that are remembered for a group. Higher: slower where many
 /// differ. Lower: ways out are missed.
@@ -56,6 +56,11 @@ pub(super) fn add_direction(known: &mut Directions, normal: DVec3, depth: f64) {
         Some((_, greatest)) => *greatest = greatest.max(depth),
         None => _ = known.try_push((normal, depth)),
     }
+}
+
+/// Returns the greatest depth of resting bodies.
+pub(super) fn resting_depth(filter_distance: f64) -> f64 {
+    RESTING_DEPTH * filter_distance
 }
 
 /// Returns the difference up to which two heights are equal.

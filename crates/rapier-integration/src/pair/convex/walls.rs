@@ -11,8 +11,8 @@ use super::query::{ConvexQuery, DroppedContacts, PlacedParts};
 use crate::mesh::{LazySurface, is_covered};
 use crate::pair::query::ContactList;
 use crate::pair::shapes::{filter_distance, filter_unit};
-use crate::pair::tuning::{RESTING_DEPTH, SAME_DIRECTION, SAME_SIDE};
-use crate::pair::ways::{Ways, equal_height, greatest_overlap};
+use crate::pair::tuning::{SAME_DIRECTION, SAME_SIDE};
+use crate::pair::ways::{Ways, equal_height, greatest_overlap, resting_depth};
 
 /// Least sine of the angle between a triangle and a contact that leads behind the triangle. Higher:
 /// bodies catch on walls behind the edge that they slide over. Lower: rounding decides about
@@ -201,7 +201,7 @@ impl ConvexQuery<'_> {
         let known = known.map(|(part, normal, _, depth)| (part, normal, depth.max(0.0)));
         let overlaps = hits.filter(|(.., depth)| *depth > 0.0);
         let overlaps = overlaps.map(|(part, normal, hit, _)| (part, normal, hit));
-        let small = RESTING_DEPTH * self.filter_distance();
+        let small = resting_depth(self.filter_distance());
         ways.find(small, known, overlaps, |hit, way, length| {
             self.is_parted(surface, hit, (way, length), at_hand)
         });

@@ -8,7 +8,6 @@ fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>)
     Crossing {
         pair,
         is_crossing: true,
-        are_passed_sheets: false,
         is_touching: false,
         is_reliable,
         normal,
