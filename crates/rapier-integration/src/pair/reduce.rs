@@ -13,8 +13,8 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::TrackedContact;
 
 use super::tuning::{
-    DEPTH_SHARE, EQUAL_DEPTH, FILTERED, HOVER, PATCH_SIZE, SAME_DIRECTION, SAME_FAR_DIRECTION,
-    SAME_NORMAL_OVER, SMALL_RADIUS,
+    DEPTH_SHARE, EQUAL_DEPTH, FILTERED, HOVER, NEAR_NORMAL, PATCH_SIZE, SAME_DIRECTION,
+    SAME_FAR_DIRECTION, SMALL_RADIUS,
 };
 
 /// Points of a patch. Rapier's solver uses no more.
@@ -30,7 +30,7 @@ pub(crate) struct PatchPlan {
     /// patch of such contacts is one manifold.
     pub(super) far: Real,
     /// Distance beyond which a contact hovers: near one that touches, it joins its patch by
-    /// [`SAME_NORMAL_OVER`]. Infinite if the prediction distance is a tenth of the radius or more.
+    /// [`NEAR_NORMAL`]. Infinite if the prediction distance is a tenth of the radius or more.
     hover_distance: Real,
     /// Difference to the deepest contact of a patch up to which another counts as equally deep.
     pub(super) equal_depth: Real,
@@ -160,7 +160,8 @@ impl Reduction {
                 };
                 let is_like = |seed: &ContactSummary| {
                     let cosine = seed.normal.dot(summary.normal);
-                    cosine >= same_direction as Real || cosine >= SAME_NORMAL_OVER && hovers(seed)
+                    cosine >= same_direction as Real
+                        || cosine >= NEAR_NORMAL as Real && hovers(seed)
                 };
                 let known = seeds[first..].iter().position(is_like);
                 *patch = known.map_or(seeds.len(), |i| first + i) as u32;

@@ -1,8 +1,20 @@
 //! The numbers that choose contacts and patches. They do not depend on the unit of length.
 //!
-//! Numbers that bound rounding, memory or time stand where they are used.
+//! Half and double of each one hold as many random scenes, as the sweep in `docs/measurements.md`
+//! shows. So three numbers, [`HALF`], [`QUARTER`] and [`TENTH`], serve most purposes, and a purpose
+//! has its own number only where tests need one. Numbers that bound rounding, memory or time stand
+//! where they are used.
 
 use parry3d::math::Real;
+
+/// The larger part of something.
+const HALF: f64 = 0.5;
+
+/// A small part of something.
+const QUARTER: f64 = 0.25;
+
+/// A hardly visible part of something.
+const TENTH: f64 = 0.1;
 
 // Angles, as cosines.
 
@@ -15,22 +27,16 @@ pub(super) const SAME_DIRECTION: f64 = 0.99;
 /// stopped by triangles ahead.
 pub(super) const SAME_FAR_DIRECTION: f64 = 0.97;
 
-/// Least cosine of the normals of a contact and of one that it [hovers](HOVER) beside. Higher: more points in piles at rest; lower: contacts about to touch are left out.
-pub(super) const SAME_NORMAL_OVER: Real = 0.9;
-
 /// Least cosine between the normal of a [`DISTANT`] contact and both triangle normals. Higher:
-/// smooth bodies lose contacts; lower: gears are braked.
-pub(super) const NEAR_NORMAL: f64 = 0.87;
+/// smooth bodies lose contacts; lower: gears are braked. Also least cosine of the normals of a
+/// contact and of one that it [hovers](HOVER) beside. Higher: more points in piles at rest; lower:
+/// contacts about to touch are left out.
+pub(super) const NEAR_NORMAL: f64 = 0.9;
 
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in
 /// it. Lower: contacts that do not push against each other are rejected, and bodies stumble over
 /// walls within a mesh.
-pub(super) const SAME_SIDE: f64 = 0.5;
-
-/// Least cosine between the normals of a contact and of a face whose normal it takes. Higher:
-/// shapes deep in a mesh stumble over internal edges. Lower: shapes half within a wall are pushed
-/// through it.
-pub(super) const AGAINST: f64 = -0.05;
+pub(super) const SAME_SIDE: f64 = HALF;
 
 // Lengths in prediction distances.
 
@@ -42,28 +48,28 @@ pub(super) const DEEPEST: f64 = 4.0;
 /// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in
 /// tenths of its radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into
 /// solids.
-pub(super) const ROOM_DEPTH: f64 = 0.5;
+pub(super) const ROOM_DEPTH: f64 = HALF;
 
 /// Depth, in prediction distances, up to which a part counts as above the face at a border. Higher:
 /// rims do not carry what overhangs them. Lower: fast bodies stumble where meshes meet.
-pub(super) const BORDER_DEPTH: f64 = 0.5;
+pub(super) const BORDER_DEPTH: f64 = HALF;
 
 /// Depth up to which a shape counts as above the plane of a border triangle, in filter units.
 /// Higher: rims do not carry what overhangs them. Lower: bodies stumble where meshes meet.
-pub(super) const LIP: f64 = 0.25;
+pub(super) const LIP: f64 = QUARTER;
 
 /// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
 /// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
 /// with less warning.
-pub(super) const DISTANT: f64 = 0.25;
+pub(super) const DISTANT: f64 = QUARTER;
 
-/// Greatest depth of resting bodies, in filter distances: a fiftieth of the radius. Higher: bodies
+/// Greatest depth of resting bodies, in filter distances: a fortieth of the radius. Higher: bodies
 /// deep in others leave along one way. Lower: heavy bodies stop at gaps.
-pub(super) const RESTING_DEPTH: f64 = 0.2;
+pub(super) const RESTING_DEPTH: f64 = QUARTER;
 
 /// Greatest distance of a contact that belongs to a patch of another direction. Higher: more points;
 /// lower: bodies in motion come deeper into others.
-pub(super) const HOVER: Real = 0.1;
+pub(super) const HOVER: Real = TENTH as Real;
 
 /// Difference of depth below which points count as equally deep. Higher: points that hover replace
 /// points that carry, and bodies rock; lower: thin plates turn through what they hit.
@@ -77,13 +83,13 @@ pub(super) const SMALL_RADIUS: Real = 20.0;
 
 /// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through
 /// sheets that face away from them. Lower: rods and plates sink through sheets.
-pub(super) const THIN: f64 = 0.03;
+pub(super) const THIN: f64 = TENTH;
 
 // Lengths in radii or sizes of a shape.
 
 /// Filter distance in radii of the smaller shape. Higher: plates that soft CCD sees turn through
 /// what they meet; lower: small bodies keep contacts at internal edges.
-pub(super) const FILTERED: Real = 0.1;
+pub(super) const FILTERED: Real = TENTH as Real;
 
 /// Greatest reach of fine meshes in filter distances: 0.04 radii. A body of one length unit has a radius of half a unit, and Rapier predicts 0.02 units by default.
 /// Higher: fine meshes cost more; lower: bodies come deeper into others before they meet.
@@ -91,11 +97,11 @@ pub(super) const REACH: f64 = 0.4;
 
 /// Least reach of fine meshes in filter distances: 0.01 radii. Higher: fine meshes cost more;
 /// lower: bodies turn and sink where they are pressed together.
-pub(super) const LEAST_REACH: f64 = 0.1;
+pub(super) const LEAST_REACH: f64 = TENTH;
 
 /// Reach of fine meshes in sizes of their triangles. Higher: each triangle is near more others.
 /// Lower: meshes of a few thousand triangles have contacts late.
-pub(super) const REACH_PER_TRIANGLE: f64 = 0.25;
+pub(super) const REACH_PER_TRIANGLE: f64 = QUARTER;
 
 /// Size of a patch in radii of the smaller shape. Higher: legs of a table are left out; lower:
 /// a flat side is many patches, and points that move lose their data.
@@ -104,45 +110,45 @@ pub(super) const PATCH_SIZE: Real = 0.2;
 /// Greatest depth of a body's middle behind a sheet that still pushes it to the front, in half
 /// heights of the body. Higher: bodies from behind are pulled through; lower: bodies that hit a
 /// ground fast fall out below.
-pub(super) const LEAN: f64 = 0.33;
+pub(super) const LEAN: f64 = QUARTER;
 
 /// Half heights of a body that may stick out of a room that holds it. A room whose faces lead in
 /// holds a body whose middle is so far behind a wall. Higher: bodies deep in a solid stay there.
 /// Lower: fast bodies fall through the floors of rooms.
-pub(super) const STICKS_OUT: Real = 0.5;
+pub(super) const STICKS_OUT: Real = HALF as Real;
 
 /// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low
 /// halls. Lower: small fast bodies fall through floors and walls that are solids.
-pub(super) const SLAB: Real = 0.1;
+pub(super) const SLAB: Real = TENTH as Real;
 
 // Shares.
 
 /// The reach by triangle size is used if it is below this share of the other reach. Higher: far
 /// contacts take more time than the smaller reach saves. Lower: fine meshes cost more.
-pub(super) const MUCH_LESS: f64 = 0.75;
+pub(super) const MUCH_LESS: f64 = 1.0 - QUARTER;
 
 /// Share of the depth of the deepest point that counts like [`EQUAL_DEPTH`] where points
 /// are chosen. Higher: points that hover replace points that carry. Lower: thin discs stand on one
 /// arc of the rim, and turn through floors.
-pub(super) const DEPTH_SHARE: Real = 0.5;
+pub(super) const DEPTH_SHARE: Real = HALF as Real;
 
 /// Share of the direction out of two triangles in the direction of their contact, if the contour of
 /// the overlap is not flat. Higher: bodies that are deep in each other are pushed aside. Lower:
 /// heavy loads press bodies deeper.
-pub(super) const OUTWARD: f64 = 0.3;
+pub(super) const OUTWARD: f64 = QUARTER;
 
 /// Ratio of lengths up to which triangles are parted as an overlap is. Higher: walls beside a floor
 /// let go. Lower: edges that cross push each other aside.
-pub(super) const ALIKE: f64 = 1.1;
+pub(super) const ALIKE: f64 = 1.0 + TENTH;
 
 /// Least area vector of a contour, as a share of the area that its segments sweep around the
 /// middle. Higher: bodies that hook into each other keep the contacts of their triangles. Lower:
 /// contours push nowhere.
-pub(super) const COHERENT: f64 = 0.5;
+pub(super) const COHERENT: f64 = HALF;
 
 /// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all
 /// their way. Lower: bodies deep in others turn and sink.
-pub(super) const DEPTH_PER_LENGTH: f64 = 0.5;
+pub(super) const DEPTH_PER_LENGTH: f64 = HALF;
 
 /// Greatest gap of a closed contour, and distance of a flat one from its plane, as a share of its
 /// length. Higher: contours of surfaces with holes are closed, and those around edges flat. Lower:
@@ -152,9 +158,9 @@ pub(super) const UNEVEN: f64 = 1e-3;
 /// An end of an edge counts if its distance from the border exceeds the least one by less than this
 /// share. Higher: rods that stick out over a cliff are held up. Lower: rods that roll over a border
 /// turn.
-pub(super) const ALONG_BORDER: f64 = 0.1;
+pub(super) const ALONG_BORDER: f64 = QUARTER;
 
 /// Greatest depth along the normal of a face, as a share of the height of the part, that never
 /// shows a part beyond the face. Higher: shapes over an edge of a box are pushed in. Lower: tips
 /// stumble over internal edges.
-pub(super) const HARDLY_BEHIND: f64 = 0.1;
+pub(super) const HARDLY_BEHIND: f64 = TENTH;

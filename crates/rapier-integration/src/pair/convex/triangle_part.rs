@@ -18,7 +18,7 @@ use super::shape::{ConvexShape, KeptHull};
 use crate::pair::borders::is_past_border;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::{ContactSummary, PatchPlan};
-use crate::pair::tuning::{AGAINST, BORDER_DEPTH, HARDLY_BEHIND, SAME_SIDE};
+use crate::pair::tuning::{BORDER_DEPTH, HARDLY_BEHIND, SAME_SIDE};
 
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {
@@ -218,9 +218,8 @@ impl TrianglePartPair<'_> {
         });
         let reach = |direction| self.placed.extent.height_along(self.part.shape, direction);
         let height = || reach(face.normal) + reach(-face.normal);
-        let is_safe = || {
-            other.normal.dot(face.normal) >= AGAINST || -face.distance <= HARDLY_BEHIND * height()
-        };
+        let is_safe =
+            || other.normal.dot(face.normal) >= 0.0 || -face.distance <= HARDLY_BEHIND * height();
         (is_crossing && is_safe()).then_some(face)
     }
 
