@@ -1,23 +1,24 @@
-//! Flags store the results of searches around a triangle in 32 bits. Threads share them.
+//! Flags store the results of searches around a triangle in 64 bits. Threads share them.
 
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{MinimumCones, Side};
 
 /// Memory of searches around a triangle: strays of its edges and vertices, its [`Side`], its
-/// [`MinimumCones`], and a missing front.
+/// [`MinimumCones`], and whether it has a front.
 #[derive(Debug, Default)]
-pub(crate) struct TriangleFlags(AtomicU32);
+pub(crate) struct TriangleFlags(AtomicU64);
 
 /// [`Side`] by the number in the flags.
 const SIDES: [Side; 4] = [Side::Outer, Side::Turned, Side::Inner, Side::Sheet];
 
 impl TriangleFlags {
-    const HAS_NO_FRONT: u32 = 1 << 6;
-    const HAS_SIDE: u32 = 1 << 7;
+    const HAS_SIDE: u64 = 1 << 7;
+    /// By whether the triangle has a front.
+    const FRONT: [u64; 2] = [1 << 32, 1 << 33];
 
-    fn bits(feature: Feature) -> [u32; 2] {
+    fn bits(feature: Feature) -> [u64; 2] {
         let place = match feature {
             Feature::Edge(i) => i,
             Feature::Vertex(i) => 3 + i,
@@ -39,16 +40,17 @@ impl TriangleFlags {
     }
 
     pub(super) fn set_side(&self, side: Side) {
-        self.0.fetch_or(Self::HAS_SIDE | (side as u32) << 14, Ordering::Relaxed);
+        self.0.fetch_or(Self::HAS_SIDE | (side as u64) << 14, Ordering::Relaxed);
     }
 
-    /// Returns false if a search has found no front.
-    pub(super) fn may_have_front(&self) -> bool {
-        self.0.load(Ordering::Relaxed) & Self::HAS_NO_FRONT == 0
+    /// `None` before a search.
+    pub(super) fn has_front(&self) -> Option<bool> {
+        let flags = self.0.load(Ordering::Relaxed);
+        [false, true].into_iter().find(|&front| flags & Self::FRONT[usize::from(front)] != 0)
     }
 
-    pub(super) fn set_no_front(&self) {
-        self.0.fetch_or(Self::HAS_NO_FRONT, Ordering::Relaxed);
+    pub(super) fn set_front(&self, has_front: bool) {
+        self.0.fetch_or(Self::FRONT[usize::from(has_front)], Ordering::Relaxed);
     }
 
     #[inline]
@@ -57,7 +59,7 @@ impl TriangleFlags {
     }
 
     pub(super) fn set_cones(&self, cones: MinimumCones) {
-        self.0.fetch_or(u32::from(cones.bits()) << 16, Ordering::Relaxed);
+        self.0.fetch_or(u64::from(cones.bits()) << 16, Ordering::Relaxed);
     }
 
     pub(super) fn set(&self, feature: Feature, found: bool) {

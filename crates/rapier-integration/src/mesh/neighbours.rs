@@ -15,8 +15,8 @@ use super::flags::TriangleFlags;
 /// The twins of the edges of a triangle, and its flags.
 #[derive(Debug, Default)]
 pub(super) struct Neighbour {
-    /// 0 before the search, 1 for none, else 2 more than the twin. The highest bits tell if the
-    /// triangle is a double, and if it has no front.
+    /// 0 before the search, 1 for none, else 2 more than the twin. The highest bit of the first
+    /// tells if the triangle is a double.
     twins: [AtomicU32; 3],
     pub(super) flags: TriangleFlags,
 }
@@ -34,16 +34,8 @@ impl Neighbour {
         (twin & !Self::HIGHEST).checked_sub(2)
     }
 
-    fn has_highest(&self, edge: usize) -> bool {
-        self.twins[edge].load(Ordering::Relaxed) & Self::HIGHEST != 0
-    }
-
     pub(super) fn is_double(&self) -> bool {
-        self.has_highest(0)
-    }
-
-    pub(super) fn has_front(&self) -> bool {
-        !self.has_highest(1)
+        self.twins[0].load(Ordering::Relaxed) & Self::HIGHEST != 0
     }
 
     /// Finds the neighbours of a triangle in about 1 µs. Other threads may find the same ones
@@ -51,10 +43,9 @@ impl Neighbour {
     #[cold]
     fn find(&self, mesh: &TriMesh, triangle: u32) {
         let (twins, is_double) = twins(mesh, triangle);
-        let highest = [is_double, !has_front(mesh, triangle), false];
         for edge in [2, 1, 0] {
             let twin = twins[edge].map_or(1, |twin| twin + 2);
-            let highest = if highest[edge] { Self::HIGHEST } else { 0 };
+            let highest = if is_double && edge == 0 { Self::HIGHEST } else { 0 };
             self.twins[edge].store(twin | highest, Ordering::Release);
         }
     }
