@@ -109,6 +109,33 @@ def engines():
     chart.save("engines.svg")
 
 
+def tuning():
+    """Scenes that hold if a number is halved, as it is, and doubled."""
+    text = (DOCS / "data/tuning.csv").read_text()
+    base, scenes = [int(n) for n in re.findall(r"# (\d+) of (\d+) scenes", text)[0]]
+    rows = [[row[0].strip("`"), *(int(cell) for cell in row[4:])] for row in table("tuning")[1:]]
+    left, top, step = 230, 80, 21
+    bottom = top + step * len(rows)
+    chart = Chart(f"Random scenes that hold, of {scenes}, if one number is halved or doubled", bottom + 40)
+    least = min(min(row[1:]) for row in rows) - 10
+    x_of = lambda held: left + (WIDTH - left - 40) * (held - least) / (scenes - least)
+    for tick in range(least - least % 10 + 10, scenes + 1, 10):
+        chart.line([(x_of(tick), top - 8), (x_of(tick), bottom)])
+        chart.text(x_of(tick), bottom + 20, str(tick), anchor="middle")
+    chart.line([(x_of(base), top - 8), (x_of(base), bottom)], "#222222", 2)
+    chart.text(x_of(base), top - 14, f"as they are: {base}", anchor="middle")
+    for x, name, colour in [(20, "half", "other"), (90, "double", "SBBK")]:
+        chart.dot(x + 6, 55, COLOURS[colour])
+        chart.text(x + 18, 59, name)
+    for k, (name, half, double) in enumerate(rows):
+        y = top + step * k + 10
+        chart.text(left - 14, y + 4, name, anchor="end")
+        chart.dot(x_of(half), y - 2, COLOURS["other"])
+        chart.dot(x_of(double), y + 2, COLOURS["SBBK"])
+    chart.save("tuning.svg")
+
+
 everyday()
 one_step()
 engines()
+tuning()
