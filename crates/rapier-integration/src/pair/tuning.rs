@@ -67,8 +67,8 @@ pub(super) const DISTANT: f64 = QUARTER;
 /// deep in others leave along one way. Lower: heavy bodies stop at gaps.
 pub(super) const RESTING_DEPTH: f64 = QUARTER;
 
-/// Greatest distance of a contact that belongs to a patch of another direction. Higher: more points;
-/// lower: bodies in motion come deeper into others.
+/// Greatest distance of a contact that belongs to a patch of another direction. Higher: more
+/// points; lower: bodies in motion come deeper into others.
 pub(super) const HOVER: Real = TENTH as Real;
 
 /// Difference of depth below which points count as equally deep. Higher: points that hover replace
@@ -76,9 +76,9 @@ pub(super) const HOVER: Real = TENTH as Real;
 pub(super) const EQUAL_DEPTH: Real = 0.02;
 
 /// Radius, in prediction distances, below which a convex shape is small. Small shapes turn far in a
-/// step, so [`EQUAL_DEPTH`] grows with the square of their ratio, up to the size of a
-/// patch. Higher: cones on uneven ground stay awake. Lower: coins stand on one arc of the rim, and
-/// turn through floors.
+/// step, so [`EQUAL_DEPTH`] grows with the square of their ratio, up to the size of a patch.
+/// Higher: cones on uneven ground stay awake. Lower: coins stand on one arc of the rim, and turn
+/// through floors.
 pub(super) const SMALL_RADIUS: Real = 20.0;
 
 /// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through
@@ -91,8 +91,9 @@ pub(super) const THIN: f64 = TENTH;
 /// what they meet; lower: small bodies keep contacts at internal edges.
 pub(super) const FILTERED: Real = TENTH as Real;
 
-/// Greatest reach of fine meshes in filter distances: 0.04 radii. A body of one length unit has a radius of half a unit, and Rapier predicts 0.02 units by default.
-/// Higher: fine meshes cost more; lower: bodies come deeper into others before they meet.
+/// Greatest reach of fine meshes in filter distances: 0.04 radii. A body of one length unit has a
+/// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
+/// lower: bodies come deeper into others before they meet.
 pub(super) const REACH: f64 = 0.4;
 
 /// Least reach of fine meshes in filter distances: 0.01 radii. Higher: fine meshes cost more;
@@ -103,8 +104,8 @@ pub(super) const LEAST_REACH: f64 = TENTH;
 /// Lower: meshes of a few thousand triangles have contacts late.
 pub(super) const REACH_PER_TRIANGLE: f64 = QUARTER;
 
-/// Size of a patch in radii of the smaller shape. Higher: legs of a table are left out; lower:
-/// a flat side is many patches, and points that move lose their data.
+/// Size of a patch in radii of the smaller shape. Higher: legs of a table are left out; lower: a
+/// flat side is many patches, and points that move lose their data.
 pub(super) const PATCH_SIZE: Real = 0.2;
 
 /// Greatest depth of a body's middle behind a sheet that still pushes it to the front, in half
@@ -127,9 +128,9 @@ pub(super) const SLAB: Real = TENTH as Real;
 /// contacts take more time than the smaller reach saves. Lower: fine meshes cost more.
 pub(super) const MUCH_LESS: f64 = 1.0 - QUARTER;
 
-/// Share of the depth of the deepest point that counts like [`EQUAL_DEPTH`] where points
-/// are chosen. Higher: points that hover replace points that carry. Lower: thin discs stand on one
-/// arc of the rim, and turn through floors.
+/// Share of the depth of the deepest point that counts like [`EQUAL_DEPTH`] where points are
+/// chosen. Higher: points that hover replace points that carry. Lower: thin discs stand on one arc
+/// of the rim, and turn through floors.
 pub(super) const DEPTH_SHARE: Real = HALF as Real;
 
 /// Share of the direction out of two triangles in the direction of their contact, if the contour of
