@@ -73,8 +73,8 @@ def held(binary, numbers, copy):
 
 
 def write_table(rows, scenes, base):
-    head = (f"| number | half | as it is | double | scenes that hold: half | double |\n"
-            f"|---|---:|---:|---:|---:|---:|\n")
+    head = ("| number | half | as it is | double | scenes that hold: half | double |\n"
+            "|---|---:|---:|---:|---:|---:|\n")
     body = "".join(f"| `{name}` | {low:.3g} | {value:.3g} | {high:.3g} | {at_low} | {at_high} |\n"
                    for name, low, value, high, at_low, at_high in rows)
     page = DOCS / "measurements.md"
@@ -91,7 +91,8 @@ def main():
         commit = subprocess.check_output(["git", "rev-parse", "--short=8", "HEAD"], cwd=copy, text=True)
         numbers = tunable(copy)
         build = ["cargo", "build", "-q", "--release", "-p", "sbbk-lab", "--example", "hard_scenes"]
-        subprocess.run(build, cwd=copy, check=True)
+        quiet = os.environ | {"RUSTFLAGS": "-Awarnings"}
+        subprocess.run(build, cwd=copy, check=True, env=quiet)
         binary = copy / "target/release/examples/hard_scenes"
         base, scenes = held(binary, {}, copy)
         rows = []
