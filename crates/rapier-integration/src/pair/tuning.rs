@@ -1,19 +1,19 @@
 //! The numbers that choose contacts and patches. They do not depend on the unit of length.
 //!
-//! Half and double of each one hold as many random scenes, as the sweep in `docs/measurements.md`
-//! shows. So three numbers, [`HALF`], [`QUARTER`] and [`TENTH`], serve most purposes, and a purpose
+//! A sweep in `docs/measurements.md` halves and doubles each number. Hardly any random scene depends
+//! on it. So three numbers, [`HALF`], [`QUARTER`] and [`TENTH`], serve most purposes, and a purpose
 //! has its own number only where tests need one. Numbers that bound rounding, memory or time stand
 //! where they are used.
 
 use parry3d::math::Real;
 
-/// The larger part of something.
+/// Share of a whole that counts as most of it.
 const HALF: f64 = 0.5;
 
-/// A small part of something.
+/// Share of a length that is little beside it.
 const QUARTER: f64 = 0.25;
 
-/// A hardly visible part of something.
+/// Share of a length that hardly counts beside it.
 const TENTH: f64 = 0.1;
 
 // Angles, as cosines.
