@@ -38,7 +38,7 @@ def scaled(value, is_cosine, factor):
     if is_cosine:
         return math.cos(factor * math.acos(value))
     # A ratio of two lengths scales by its excess.
-    return 1 + factor * (value - 1) if value > 1 and value < 2 else factor * value
+    return 1 + factor * (value - 1) if 1 < value < 2 else factor * value
 
 
 def tunable(copy):

@@ -15,8 +15,8 @@ const SIDES: [Side; 4] = [Side::Outer, Side::Turned, Side::Inner, Side::Sheet];
 
 impl TriangleFlags {
     const HAS_SIDE: u64 = 1 << 7;
-    /// By whether the triangle has a front.
-    const FRONT: [u64; 2] = [1 << 32, 1 << 33];
+    const FRONT_IS_SEARCHED: u64 = 1 << 32;
+    const HAS_FRONT: u64 = 1 << 33;
 
     fn bits(feature: Feature) -> [u64; 2] {
         let place = match feature {
@@ -46,11 +46,12 @@ impl TriangleFlags {
     /// `None` before a search.
     pub(super) fn has_front(&self) -> Option<bool> {
         let flags = self.0.load(Ordering::Relaxed);
-        [false, true].into_iter().find(|&front| flags & Self::FRONT[usize::from(front)] != 0)
+        (flags & Self::FRONT_IS_SEARCHED != 0).then_some(flags & Self::HAS_FRONT != 0)
     }
 
     pub(super) fn set_front(&self, has_front: bool) {
-        self.0.fetch_or(Self::FRONT[usize::from(has_front)], Ordering::Relaxed);
+        let found = if has_front { Self::HAS_FRONT } else { 0 };
+        self.0.fetch_or(Self::FRONT_IS_SEARCHED | found, Ordering::Relaxed);
     }
 
     #[inline]
