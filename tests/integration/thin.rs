@@ -42,6 +42,30 @@ fn a_plate_a_little_behind_a_sheet_is_held() {
     }
 }
 
+/// Would catch bodies that fall through an open floor although a part of them is above it, and
+/// bodies from below that the floor pulls up.
+#[test]
+fn a_body_through_a_sheet_leaves_to_the_front_until_three_quarters_are_behind() {
+    let floor = floor();
+    for body in [mesh::cuboid(Vec3::splat(0.5), 3), mesh::ball(0.5, 6)] {
+        let body = shape(&body);
+        for (behind, side) in [(0.1, 1.0), (0.3, 1.0), (0.45, 1.0), (0.55, -1.0), (0.8, -1.0)] {
+            let place = Vec3::new(0.13, -0.5 * behind, 0.21);
+            let query = Question::new(&floor, &body, Pose::from_translation(place));
+            for query in [query, query.flipped(true)] {
+                let found = query.fresh(&every());
+                let normal = |manifold: &Manifold| {
+                    query.host_order([manifold.local_n1, manifold.local_n2])[0]
+                };
+                let is_apart = |manifold: &Manifold| side * normal(manifold).y > 0.99;
+                assert!(found.iter().any(is_apart), "{}, {behind} behind", body.indices().len());
+                let is_through = |manifold: &Manifold| side * normal(manifold).y < -0.5;
+                assert!(!found.iter().any(is_through), "{}, {behind} behind", body.indices().len());
+            }
+        }
+    }
+}
+
 /// Would catch more points of one direction than Rapier's solver takes, and points away from the
 /// corners.
 #[test]

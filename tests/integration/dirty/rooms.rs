@@ -279,3 +279,32 @@ fn bodies_stay_in_long_tubes() {
         }
     }
 }
+
+/// Bodies overlap solids whose faces lead inwards. Would catch solids that count as rooms, and hold
+/// a body in their wall or pull it in.
+#[test]
+fn bodies_leave_solids_that_face_inwards() {
+    const RADIUS: f32 = 0.2;
+    let profile = |radius: f32| {
+        let angles = (0..=12).map(|i| FRAC_PI_2 * i as f32 / 12.0);
+        angles.map(move |angle| radius * Vec2::new(angle.sin(), -angle.cos()))
+    };
+    // A bowl a tenth thick, with its inner side at height 0.
+    let shell: Vec<Vec2> =
+        profile(1.6).chain(profile(1.5).collect::<Vec<_>>().into_iter().rev()).collect();
+    let bowl = mesh::revolved(&shell, 40).mapped(|vertex| vertex + 1.5 * Vec3::Y);
+    let block = mesh::cuboid(Vec3::new(0.6, 0.4, 0.6), 1).mapped(|vertex| vertex - 0.4 * Vec3::Y);
+    // The box around a turned ball is higher than the ball.
+    let turn = Quat::from_rotation_z(0.9) * Quat::from_rotation_x(0.6);
+    for (flags, (name, solid)) in with_flags([("bowl", bowl), ("block", block)]) {
+        assert!(solid.volume() > 0.0);
+        let solid = mesh::turned_inside_out(solid).shape_with(flags);
+        let ball = mesh::ball(RADIUS, 6).shape_with(flags);
+        for sunk in [0.02, 0.05, 0.08, 0.095] {
+            let start = Pose3::from_parts((RADIUS - sunk) * Vec3::Y, turn);
+            let end = end(180, &solid, RigidBodyBuilder::dynamic().pose(start), &ball);
+            let height = end.y - RADIUS;
+            assert!(height.abs() < 0.02, "{height} over a {name}, from a depth of {sunk}");
+        }
+    }
+}

@@ -20,7 +20,7 @@ use super::shapes::{
     NEARLY_TOUCHING, OverSheet, Room, TriangleHit, TriangleShape, TriangleShapes,
     TriangleSurfaceContact, filter_distance, filter_unit,
 };
-use super::tuning::{LEAN, LIP, ROOM_DEPTH, SAME_SIDE, SLAB, STICKS_OUT};
+use super::tuning::{LIP, ROOM_DEPTH, SAME_SIDE, SLAB, STICKS_OUT, SURE_SIDE};
 use crate::mesh::{BEHIND, LazySurface, MeshView, is_covered};
 
 impl TriangleShapes<'_> {
@@ -49,13 +49,8 @@ impl TriangleShapes<'_> {
     /// Returns the height over the front of a sheet, with a preference for the front, if there is
     /// one.
     pub(super) fn leaning(&self, over: OverSheet, sheet: usize, triangle: u32) -> f64 {
-        self.over_front(over, sheet, triangle).unwrap_or(over.height)
-    }
-
-    /// Returns the height with the preference. `None` without a front.
-    fn over_front(&self, over: OverSheet, sheet: usize, triangle: u32) -> Option<f64> {
         let has_front = self[sheet].has_front(triangle);
-        has_front.then_some(over.height + LEAN * over.half_height)
+        over.height + if has_front { f64::from(STICKS_OUT) * over.half_height } else { 0.0 }
     }
 
     /// Returns the first triangle that crosses a sheet, and the position of the other shape over
@@ -71,10 +66,10 @@ impl TriangleShapes<'_> {
     /// little, and is not in doubt.
     pub(super) fn is_side_doubtful(&self, crossings: &[Crossing]) -> bool {
         let Some((pair, sheet, over)) = self.crossed_sheet(crossings) else { return false };
-        if self.over_front(over, sheet, pair[sheet]).is_some_and(|height| height > 0.0) {
+        let OverSheet { height, half_height, .. } = over;
+        if height > -SURE_SIDE * half_height && self[sheet].has_front(pair[sheet]) {
             return false;
         }
-        let OverSheet { height, half_height, .. } = over;
         let sunk = half_height - height.abs();
         let is_at_rest = (0.0..=LIP * self.filter_unit()).contains(&sunk);
         !is_at_rest && height.abs() < self.filter_distance
@@ -195,10 +190,14 @@ impl<'a> HeldMesh<'a> {
         }
         *test = InsideTest::default();
         let Some((_, wall, behind)) = self.surface.nearest(middle) else { return false };
-        let height = self.held.height(self.way_to(wall), Real::INFINITY);
+        let distance = wall.distance(middle);
+        let height = self.held.height(self.way_to(wall), distance / STICKS_OUT);
+        // Rounding moves no point so far, so this one is in the room.
+        let rounding = 64.0 * Real::EPSILON * self.holder.magnitude();
+        let within = wall + rounding * (wall - middle).normalize_or_zero();
         behind <= -BEHIND
-            && wall.distance(middle) <= STICKS_OUT * height
-            && !self.is_lower(self.least_height(), 2.0 * wall - middle, wall, -1.0)
+            && distance < STICKS_OUT * height
+            && !self.is_lower(self.least_height(), within, wall, -1.0)
     }
 
     /// Returns a motion for which a mesh whose faces lead out stays a room. `None` if the mesh is
@@ -224,7 +223,7 @@ impl<'a> HeldMesh<'a> {
     /// solid that is inside out.
     fn slack_in_inward_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
         let depth = exit.distance(middle);
-        let height = self.held.height(self.way_to(exit), Real::INFINITY);
+        let height = self.held.height(self.way_to(exit), 0.0);
         let is_room = !self.is_lower(self.least_height(), middle, exit, -1.0)
             || depth + height >= self.pose.prediction
                 && !self.is_lower(2.0 * height, middle, exit, -1.0);

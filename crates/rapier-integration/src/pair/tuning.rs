@@ -108,14 +108,15 @@ pub(super) const REACH_PER_TRIANGLE: f64 = QUARTER;
 /// flat side is many patches, and points that move lose their data.
 pub(super) const PATCH_SIZE: Real = 0.2;
 
-/// Greatest depth of a body's middle behind a sheet that still pushes it to the front, in half
-/// heights of the body. Higher: bodies from behind are pulled through; lower: bodies that hit a
-/// ground fast fall out below.
-pub(super) const LEAN: f64 = QUARTER;
+/// Greatest depth of a body's middle behind the front of a sheet at which the body certainly comes
+/// from the front, in half heights of the body. Higher: thin bodies from behind are pulled through;
+/// lower: contacts hold bodies that hit a ground fast halfway through it.
+pub(super) const SURE_SIDE: f64 = QUARTER;
 
-/// Half heights of a body that may stick out of a room that holds it. A room whose faces lead in
-/// holds a body whose middle is so far behind a wall. Higher: bodies deep in a solid stay there.
-/// Lower: fast bodies fall through the floors of rooms.
+/// Greatest depth of a body's middle behind the front of a surface that holds the body in front, in
+/// half heights of the body. A room holds a body that sticks out as far. Higher: bodies deep in a
+/// solid stay there, and bodies from behind are pulled through sheets. Lower: fast bodies fall
+/// through open floors and the floors of rooms.
 pub(super) const STICKS_OUT: Real = HALF as Real;
 
 /// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low
