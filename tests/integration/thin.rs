@@ -42,8 +42,8 @@ fn a_plate_a_little_behind_a_sheet_is_held() {
     }
 }
 
-/// Would catch bodies that fall through an open floor although a part of them is above it, and
-/// bodies from below that the floor pulls up.
+/// Would catch bodies that fall through an open floor although a quarter of them is above it. Would
+/// also catch bodies from below that the floor pulls up.
 #[test]
 fn a_body_through_a_sheet_leaves_to_the_front_until_three_quarters_are_behind() {
     let floor = floor();

@@ -108,9 +108,9 @@ pub(super) const REACH_PER_TRIANGLE: f64 = QUARTER;
 /// flat side is many patches, and points that move lose their data.
 pub(super) const PATCH_SIZE: Real = 0.2;
 
-/// Greatest depth of a body's middle behind the front of a sheet at which the body certainly comes
-/// from the front, in half heights of the body. Higher: thin bodies from behind are pulled through;
-/// lower: contacts hold bodies that hit a ground fast halfway through it.
+/// Greatest depth of a body's middle behind the front of a sheet, in half heights of the body, at
+/// which its side is sure. Higher: thin bodies from behind are pulled through; lower: contacts hold
+/// bodies that hit a ground fast halfway through it.
 pub(super) const SURE_SIDE: f64 = QUARTER;
 
 /// Greatest depth of a body's middle behind the front of a surface that holds the body in front, in
