@@ -228,6 +228,21 @@ pub fn cone(count: u32) -> Mesh {
     cone
 }
 
+/// Cuts each triangle into four, so many times. Gaps stay as wide, and the triangles get smaller.
+pub fn split(mut mesh: Mesh, times: u32) -> Mesh {
+    for _ in 0..times {
+        let quarters = (0..mesh.triangle_count()).flat_map(|triangle| {
+            let [a, b, c] = mesh.corners(triangle);
+            let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
+            [a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca]
+        });
+        let vertices: Vec<Vec3> = quarters.collect();
+        let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+        mesh = Mesh::new("split", vertices.clone(), triangles.collect()).welded();
+    }
+    mesh
+}
+
 /// Parry's mesh of a mesh of the laboratory.
 pub fn shape(mesh: &Mesh) -> TriMesh {
     mesh.trimesh(TriMeshFlags::empty())

@@ -115,6 +115,24 @@ fn count_aside(dirt: Dirt<'_>) -> [usize; 2] {
     [aside, count]
 }
 
+/// Balls with T-junctions deep in each other, coarse and cut into fine triangles. Would catch
+/// overlaps whose contour counts as open at a gap, so that only the crossing triangles are parted.
+#[test]
+fn balls_with_gaps_part_along_their_overlap_however_fine_they_are() {
+    let [one, other] = [[9, 7, 8, 6, 9, 8], [8, 9, 6, 7, 10, 9]];
+    for times in [0, 1, 2] {
+        let [one, other] =
+            [one, other].map(|cells| shape(&split(mesh::cube_ball(0.5, cells), times)));
+        for turn in [0.3, 0.7, 1.1] {
+            let turn = Quat::from_scaled_axis(turn * Vec3::new(0.6, 0.5, 0.4));
+            let query = Question::new(&one, &other, Pose::from_parts(0.7 * Vec3::X, turn));
+            let found = ask(&query);
+            let deepest = found.iter().map(distance).fold(0.0, Real::min);
+            assert!(deepest <= -4.0 * query.prediction, "{deepest}, cut {times} times");
+        }
+    }
+}
+
 /// Would catch faces that have passed each other, and no longer cross, taken for two that are
 /// apart: the cube would be held inside.
 #[test]

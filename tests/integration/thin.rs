@@ -66,6 +66,28 @@ fn a_body_through_a_sheet_leaves_to_the_front_until_three_quarters_are_behind() 
     }
 }
 
+/// A tilted plate of fine triangles hovers over a sheet without a front. Would catch plates that
+/// count as halfway through, and have no contacts under the higher edge.
+#[test]
+fn a_tilted_plate_over_a_sheet_has_contacts_under_both_edges() {
+    let floor = mesh::floor(10.0, 80);
+    let floors = [mesh::random_winding(&floor, 3), mesh::two_sided(&floor)];
+    let plate = plate(32);
+    for floor in floors.map(|floor| shape(&floor)) {
+        for (tilt, gap) in [(0.02, 0.01), (0.06, 0.003), (0.06, 0.001), (0.2, 0.01)] {
+            let (sin, cos) = Real::sin_cos(tilt);
+            let height = 0.5 * sin + HALF * cos + gap;
+            let pose = Pose::from_parts(height * Vec3::Y, Quat::from_rotation_z(tilt));
+            let query = Question::new(&floor, &plate, pose).within(0.6);
+            let found = query.fresh(&every());
+            let points = found.iter().flat_map(|manifold| &manifold.points);
+            let ends = points.map(|point| point.local_p2.x);
+            let farthest = ends.fold(0.0, Real::max);
+            assert!(farthest > 0.45, "{farthest}, tilted by {tilt}, {gap} over a sheet");
+        }
+    }
+}
+
 /// Would catch more points of one direction than Rapier's solver takes, and points away from the
 /// corners.
 #[test]

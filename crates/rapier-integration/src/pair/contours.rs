@@ -14,7 +14,7 @@ use super::islands::{Crossing, IslandWay, OverlapIslands};
 use super::pose::PairPose;
 use super::shapes::{TriangleShapes, TriangleSurfaceContact};
 use super::surface::ALONG_NORMAL;
-use super::tuning::{COHERENT, DEPTH_PER_LENGTH, SAME_SIDE, UNEVEN};
+use super::tuning::{COHERENT, DEPTH_PER_LENGTH, OPEN, SAME_SIDE, UNEVEN};
 
 /// Distance from a contour to its points, as a share of its length. Higher: overlaps beside sharp
 /// edges are left out. Lower: rays meet the surface where they start.
@@ -119,7 +119,7 @@ impl<'a> Contour<'a> {
         });
         let (area, swept) =
             areas.fold((DVec3::ZERO, 0.0), |(area, swept), one| (area + one, swept + one.length()));
-        let is_closed = gap.length() <= UNEVEN * length;
+        let is_closed = gap.length() <= OPEN * length;
         let normal = area.normalize_or_zero();
         let mut ends = segments.iter().flat_map(|one| one.ends);
         (is_closed && area.length() > COHERENT * swept).then(|| Self {

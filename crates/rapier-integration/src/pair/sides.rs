@@ -71,8 +71,7 @@ impl TriangleShapes<'_> {
             return false;
         }
         let sunk = half_height - height.abs();
-        let is_at_rest = (0.0..=LIP * self.filter_unit()).contains(&sunk);
-        !is_at_rest && height.abs() < self.filter_distance
+        sunk > LIP * self.filter_unit() && height.abs() < self.filter_distance
     }
 
     /// Removes the contacts that push a body through a sheet which its triangles cross.

@@ -152,9 +152,13 @@ pub(super) const COHERENT: f64 = HALF;
 /// their way. Lower: bodies deep in others turn and sink.
 pub(super) const DEPTH_PER_LENGTH: f64 = HALF;
 
-/// Greatest gap of a closed contour, and distance of a flat one from its plane, as a share of its
-/// length. Higher: contours of surfaces with holes are closed, and those around edges flat. Lower:
-/// soups have no contours, and rounding makes flat faces uneven.
+/// Greatest gap of a closed contour, as a share of its length. Higher: contours that leave a sheet
+/// at its border are closed. Lower: surfaces with small gaps have none, so bodies deep in others
+/// stay.
+pub(super) const OPEN: f64 = TENTH;
+
+/// Greatest distance of a flat contour from its plane, as a share of its length. Higher: contours
+/// around edges are flat. Lower: rounding makes flat faces uneven.
 pub(super) const UNEVEN: f64 = 1e-3;
 
 /// An end of an edge counts if its distance from the border exceeds the least one by less than this
