@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Sweeps the numbers of tuning.rs over random scenes: python3 docs/sweep.py
+"""Sweeps the numbers of tuning.rs over random scenes: python3 docs/sweep.py [NUMBER ...]
 
 Builds a copy of the last commit whose numbers come from the environment. Halves and doubles each
 number, and counts the scenes that hold. Angles are halved and doubled, not their cosines. Writes
-docs/data/tuning.csv and a table of measurements.md. Takes half an hour on two cores.
+docs/data/tuning.csv and a table of measurements.md. Takes half an hour on two cores. With names of
+numbers as arguments, keeps the rows of the others.
 """
 import csv
 import datetime
@@ -72,6 +73,12 @@ def held(binary, numbers, copy):
     return total("held"), total("scenes")
 
 
+def known_rows(names):
+    """Rows of the last sweep, by the names of their numbers."""
+    rows = csv.reader((DOCS / "data/tuning.csv").open())
+    return {row[0]: (row[0], *map(float, row[1:4]), *map(int, row[4:])) for row in rows if row[0] in names}
+
+
 def write_table(rows, scenes, base):
     head = ("| number | half | as it is | double | scenes that hold: half | double |\n"
             "|---|---:|---:|---:|---:|---:|\n")
@@ -95,9 +102,13 @@ def main():
         subprocess.run(build, cwd=copy, check=True, env=quiet)
         binary = copy / "target/release/examples/hard_scenes"
         base, scenes = held(binary, {}, copy)
+        known = {} if len(sys.argv) == 1 else known_rows(set(numbers) - set(sys.argv[1:]))
         rows = []
         for index, (name, (_, value, is_cosine)) in enumerate(numbers.items()):
             print(f"{index + 1} of {len(numbers)}: {name}", file=sys.stderr, flush=True)
+            if name in known:
+                rows.append(known[name])
+                continue
             low, high = [scaled(value, is_cosine, factor) for factor in FACTORS]
             counts = [held(binary, {name: repr(at)}, copy)[0] for at in (low, high)]
             rows.append((name, low, value, high, *counts))
