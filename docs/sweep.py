@@ -102,6 +102,8 @@ def main():
         subprocess.run(build, cwd=copy, check=True, env=quiet)
         binary = copy / "target/release/examples/hard_scenes"
         base, scenes = held(binary, {}, copy)
+        if unknown := set(sys.argv[1:]) - set(numbers):
+            sys.exit(f"tuning.rs has no {', '.join(sorted(unknown))}, but {', '.join(numbers)}")
         known = {} if len(sys.argv) == 1 else known_rows(set(numbers) - set(sys.argv[1:]))
         rows = []
         for index, (name, (_, value, is_cosine)) in enumerate(numbers.items()):

@@ -237,8 +237,9 @@ pub fn split(mut mesh: Mesh, times: u32) -> Mesh {
             [a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca]
         });
         let vertices: Vec<Vec3> = quarters.collect();
-        let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
-        mesh = Mesh::new("split", vertices.clone(), triangles.collect()).welded();
+        let count = vertices.len() as u32 / 3;
+        let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        mesh = Mesh::new("split", vertices, triangles).welded();
     }
     mesh
 }

@@ -122,23 +122,20 @@ fn casts_along_a_floor_meet_the_wall() {
 fn fast_bodies_keep_their_way_over_oriented_floors() {
     const RADIUS: Real = 0.3;
     const SPEED: Real = 9.0;
+    let rolling = (-Vec3::Z / RADIUS, 0.7);
     let shapes = [
-        ("ball", SharedShape::ball(RADIUS), SPEED / RADIUS),
-        ("capsule", SharedShape::capsule_z(0.5, RADIUS), SPEED / RADIUS),
-        ("cuboid", SharedShape::cuboid(RADIUS, RADIUS, RADIUS), 0.0),
+        ("ball", SharedShape::ball(RADIUS), rolling),
+        ("capsule", SharedShape::capsule_z(0.5, RADIUS), rolling),
+        ("cuboid", SharedShape::cuboid(RADIUS, RADIUS, RADIUS), (Vec3::ZERO, 0.0)),
     ];
+    let start = Vec3::new(-6.03, 0.0, 0.07);
     for cells in [40, 200] {
-        let floor = mesh::floor(20.0, cells).shape_with(TriMeshFlags::ORIENTED);
-        for (name, shape, spin) in &shapes {
-            let friction = if *spin > 0.0 { 0.7 } else { 0.0 };
-            let ground = ColliderBuilder::new(floor.clone()).friction(friction);
-            let world = world_of([ground], SbbkDispatcher::default());
-            let body = RigidBodyBuilder::dynamic()
-                .translation(Vec3::new(-6.03, RADIUS, 0.07))
-                .linvel(SPEED * Vec3::X)
-                .angvel(-spin * Vec3::Z);
-            let collider = ColliderBuilder::new(shape.clone()).friction(friction);
-            let way = after(60, world, body, collider).translation().x + 6.03;
+        for (name, shape, (spin_of_speed, friction)) in shapes.clone() {
+            let (turn, height) = (Quat::IDENTITY, RADIUS);
+            let slider = Slider { name, shape, turn, height, spin_of_speed, friction };
+            let floor = mesh::floor(20.0, cells).trimesh(TriMeshFlags::ORIENTED);
+            let (end, _) = slider.slide(60, floor, start, SPEED);
+            let way = end.x - start.x;
             assert!((way - SPEED).abs() < 0.01 * SPEED, "{name}: {way} over {cells} cells");
         }
     }

@@ -290,8 +290,7 @@ fn bodies_leave_solids_that_face_inwards() {
         angles.map(move |angle| radius * Vec2::new(angle.sin(), -angle.cos()))
     };
     // A bowl a tenth thick, with its inner side at height 0.
-    let shell: Vec<Vec2> =
-        profile(1.6).chain(profile(1.5).collect::<Vec<_>>().into_iter().rev()).collect();
+    let shell: Vec<Vec2> = profile(1.6).chain(profile(1.5).rev()).collect();
     let bowl = mesh::revolved(&shell, 40).mapped(|vertex| vertex + 1.5 * Vec3::Y);
     let block = mesh::cuboid(Vec3::new(0.6, 0.4, 0.6), 1).mapped(|vertex| vertex - 0.4 * Vec3::Y);
     // The box around a turned ball is higher than the ball.

@@ -286,6 +286,11 @@ impl<'a> MeshView<'a> {
         -self.lowest(-direction) - self.root.center().dot(direction)
     }
 
+    /// Distance by which rounding may move where a ray meets a triangle.
+    pub(crate) fn rounding(&self) -> Real {
+        64.0 * Real::EPSILON * self.magnitude()
+    }
+
     /// The largest absolute coordinate.
     pub(crate) fn magnitude(&self) -> Real {
         self.root.mins.abs().max(self.root.maxs.abs()).max_element()
@@ -317,7 +322,7 @@ impl<'a> MeshView<'a> {
             return Some((hit.time_of_impact, -hit.normal));
         }
         // Rounding parts the triangles at an edge.
-        let rounding = 64.0 * Real::EPSILON * self.magnitude();
+        let rounding = self.rounding();
         let is_same = |a: &RayIntersection, b: &RayIntersection| {
             b.time_of_impact - a.time_of_impact <= rounding
         };

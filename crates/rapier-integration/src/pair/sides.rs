@@ -62,8 +62,8 @@ impl TriangleShapes<'_> {
     }
 
     /// Returns true if triangles cross a sheet, and the body may come from either side. Its middle
-    /// is a little behind the front, or the sheet has no front there. A body at rest sinks in a
-    /// little, and is not in doubt.
+    /// is a little behind the front, or the sheet has no front there. A body that hovers, or sinks in
+    /// a little at rest, is not in doubt.
     pub(super) fn is_side_doubtful(&self, crossings: &[Crossing]) -> bool {
         let Some((pair, sheet, over)) = self.crossed_sheet(crossings) else { return false };
         let OverSheet { height, half_height, .. } = over;
@@ -190,12 +190,10 @@ impl<'a> HeldMesh<'a> {
         *test = InsideTest::default();
         let Some((_, wall, behind)) = self.surface.nearest(middle) else { return false };
         let distance = wall.distance(middle);
-        let height = self.held.height(self.way_to(wall), distance / STICKS_OUT);
-        // Rounding moves no point so far, so this one is in the room.
-        let rounding = 64.0 * Real::EPSILON * self.holder.magnitude();
-        let within = wall + rounding * (wall - middle).normalize_or_zero();
+        // A ray from the wall itself may meet the wall.
+        let within = wall + self.holder.rounding() * (wall - middle).normalize_or_zero();
         behind <= -BEHIND
-            && distance < STICKS_OUT * height
+            && distance < STICKS_OUT * self.held.height(self.way_to(wall), distance / STICKS_OUT)
             && !self.is_lower(self.least_height(), within, wall, -1.0)
     }
 
@@ -222,10 +220,12 @@ impl<'a> HeldMesh<'a> {
     /// solid that is inside out.
     fn slack_in_inward_room(&self, middle: Vector, exit: Vector) -> Option<Real> {
         let depth = exit.distance(middle);
-        let height = self.held.height(self.way_to(exit), 0.0);
-        let is_room = !self.is_lower(self.least_height(), middle, exit, -1.0)
-            || depth + height >= self.pose.prediction
-                && !self.is_lower(2.0 * height, middle, exit, -1.0);
+        let fits = || {
+            let height = self.held.height(self.way_to(exit), 0.0);
+            depth + height >= self.pose.prediction
+                && !self.is_lower(2.0 * height, middle, exit, -1.0)
+        };
+        let is_room = !self.is_lower(self.least_height(), middle, exit, -1.0) || fits();
         // From this depth on, the result stays the same.
         let enough = self.held.ball().radius.min(0.5 * self.least_height());
         is_room.then_some(depth - enough)
